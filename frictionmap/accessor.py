@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from . import checks, regimes
+from .datasets.labels import regime_of_choice
 from .errors import InputError
 
 if TYPE_CHECKING:
@@ -35,6 +36,8 @@ class FrictionAccessor:
     def labels(self) -> xr.DataArray:
         """Name of the regime of every cell, such as "stick-slip"; dimensions are those of `regime`.
 
+        If one contact was chosen, with `isel` or `sel`, they are its regimes, else those of all together.
+
         Raises
         ------
         InputError
@@ -48,7 +51,7 @@ class FrictionAccessor:
         return named.assign_attrs(long_name="motion regime of the steady state")
 
     def where_regime(self, name: str) -> xr.Dataset:
-        """The dataset with NaN in all cells of other regimes.
+        """The dataset with NaN in all cells of other regimes; the regimes are those of `labels`.
 
         Parameters
         ----------
@@ -99,8 +102,9 @@ class FrictionAccessor:
         return draw(self._ds, quantity, log=log, **options)
 
     def _regime(self) -> xr.DataArray:
-        if "regime" not in self._ds:
+        name = regime_of_choice(self._ds)
+        if name not in self._ds:
             raise InputError(
                 "cannot find regimes: the dataset has no variable regime; compute it with that output"
             )
-        return self._ds["regime"]
+        return self._ds[name]

@@ -26,12 +26,19 @@ T = TypeVar("T")
 
 
 def threads(given: int | None = None) -> int:
-    """Number of threads to use: the given one, or that of the processors that this process may use."""
+    """Number of threads to use: the given one, or that of the processors that this process may use.
+
+    The variable NUMBA_NUM_THREADS limits the latter, as it does for programs that are parallel by numba.
+    """
     if given is not None:
         return whole(given, "threads", least=1)
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+    processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    text = os.environ.get("NUMBA_NUM_THREADS", "").strip()
+    if not text:
+        return processors
+    if not text.isdecimal() or int(text) < 1:
+        raise InputError(f"NUMBA_NUM_THREADS must be a whole number >= 1; got {text!r}")
+    return min(processors, int(text))
 
 
 def one_line(value: object) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from . import checks, regimes
-from .datasets.labels import BESIDE, CELL, LABELS, MARKS, REFERENCES, SCALES
+from .datasets.labels import BESIDE, CELL, LABELS, MARKS, REFERENCES, SCALES, regime_of_choice
 from .datasets.schema import check_structure, kind
 from .datasets.variables import coordinate, label_variable
 from .errors import InputError
@@ -18,6 +18,12 @@ from .version import __version__
 #: Cells of all samples that are held at a time.
 _AT_ONCE = 1 << 22
 
+#: Variables with quantiles; a contact that was chosen has a beta_stick of its own.
+_OF_QUANTILES = ("beta_lim", "beta_stick", "contact_amplitude")
+
+#: Coordinates of a contact that was chosen.
+_OF_CONTACT = ("contact", "contact_name")
+
 
 def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0.95)) -> xr.Dataset:
     """Shares of each regime, and quantiles of boundaries and amplitude, over a further axis of maps.
@@ -27,7 +33,8 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
     ds : xarray.Dataset
         Maps along one further axis, as ``sweep(..., axes=...)`` returns them or a store holds them (other
         axes chosen before, with `isel` or `sel`); read part by part.  Of a store that is not finished only
-        the samples that are.
+        the samples that are.  Of several contacts the regimes are those of all together, or those of the
+        contact that was chosen before.
     over : str
         That axis, such as ``sample``; its points count alike.
     quantiles : sequence of float
@@ -36,10 +43,11 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
     Returns
     -------
     xarray.Dataset
-        `regime_share` (outcome, mu, r, beta): unresolved, permanent_sticking, stick_slip, continuous, adding
-        up to 1; `beta_lim_quantile`, `beta_stick_quantile` (quantile, mu, r) and, if the maps have it,
-        `contact_amplitude_quantile` (quantile, mu, r, beta), over the samples that have one (NaN: none).
-        Quantiles are interpolated between neighbours of the ordered samples.
+        `regime_share` (outcome, mu, r, beta): unresolved, permanent_sticking, stick_slip, continuous, and
+        one_way_sliding where it occurs, adding up to 1; `beta_lim_quantile`, `beta_stick_quantile` (quantile,
+        mu, r) and, if the maps have it for one contact, `contact_amplitude_quantile` (quantile, mu, r, beta),
+        over the samples that have one (NaN: none).  Quantiles are interpolated between neighbours of the
+        ordered samples.
 
     Raises
     ------
@@ -48,7 +56,7 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
     """
     if not isinstance(ds, xr.Dataset):
         raise InputError(f"ds must be an xarray.Dataset; got {type(ds).__name__}")
-    further = further_axes(ds)
+    further = [name for name in further_axes(ds) if name != "contact"]
     if kind(ds) != "map" or over not in further:
         raise InputError(
             f"unknown further axis of maps {checks.one_line(over)}; valid: {', '.join(further) or 'none'}"
@@ -58,7 +66,7 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
         raise InputError(
             f"cannot compute shares over {over}: ds has the further axis {others}; choose one point of it"
         )
-    if "regime" not in ds:
+    if regime_of_choice(ds) not in ds:
         raise InputError("cannot compute shares: ds has no variable regime; compute the map with it")
     for name in CELL:
         if name not in ds.coords:
@@ -66,9 +74,9 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
     if MARKS in ds:
         ds = _finished(ds, over)
     levels = checks.axis(quantiles, "quantiles", least=0.0, most=1.0)
-    names = [name for name in ("beta_lim", "beta_stick", "contact_amplitude") if name in ds]
+    names = [name for name in _OF_QUANTILES if _has(ds, name)]
     found = {f"{name}_quantile": _quantiles(ds, name, over, levels) for name in names}
-    outcomes = np.array([code.name for code in regimes.REGIMES])
+    outcomes, share = _shares(ds, over)
     axes = {
         "outcome": outcomes,
         "quantile": levels,
@@ -76,20 +84,21 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
     }
     coords = {name: coordinate(name, values) for name, values in axes.items()}
     coords |= {name: coordinate(name, np.atleast_1d(ds[name].values)) for name in BESIDE if name in ds.coords}
+    coords |= {name: ds[name].variable for name in _OF_CONTACT if name in ds.coords and not ds[name].ndim}
     kept = ("title", "system", "excitation", "config", *SCALES.values())
     attributes = {
         **{name: ds.attrs[name] for name in kept if name in ds.attrs},
         "Conventions": "CF-1.11", "source": f"frictionmap {__version__}", "references": REFERENCES,
         "samples": int(ds.sizes[over]),
     }  # fmt: skip
-    return xr.Dataset({"regime_share": _shares(ds, over), **found}, coords, attributes)
+    return xr.Dataset({"regime_share": share, **found}, coords, attributes)
 
 
 def read_shares(path: Path, over: str, choices: Mapping[str, float]) -> xr.Dataset:
     """Compute `shares` of a file or store over one axis, with `choices` on the others."""
     with opened(path) as ds:
         check_structure(ds, in_parts=True)
-        return shares(choose(ds, choices, over), over)
+        return shares(choose(ds, choices, over, contacts=True), over)
 
 
 def _finished(ds: xr.Dataset, over: str) -> xr.Dataset:
@@ -103,20 +112,28 @@ def _finished(ds: xr.Dataset, over: str) -> xr.Dataset:
     return ds.isel({over: done})
 
 
-def _shares(ds: xr.Dataset, over: str) -> xr.Variable:
-    codes = [code.value for code in regimes.REGIMES]
-    counts = np.zeros((len(codes), *(ds[name].size for name in CELL)), dtype=np.int64)
+def _has(ds: xr.Dataset, name: str) -> bool:
+    """Whether a dataset has a variable, for one contact or for all together."""
+    return name in ds and "contact" not in ds[name].dims
+
+
+def _shares(ds: xr.Dataset, over: str) -> tuple[np.ndarray, xr.Variable]:
+    """Names of the regimes, that of belts only where it occurs, and the share of each."""
+    counts = np.zeros((len(regimes.BELT_REGIMES), *(ds[name].size for name in CELL)), dtype=np.int64)
     for k in range(ds.sizes[over]):
-        values = _along(ds["regime"].variable.isel({over: k}), CELL)
-        for count, code in zip(counts, codes, strict=True):
-            count += values == code
-    return label_variable("regime_share", counts / ds.sizes[over])
+        values = _along(ds[regime_of_choice(ds)].variable.isel({over: k}), CELL)
+        for count, code in zip(counts, regimes.BELT_REGIMES, strict=True):
+            count += values == code.value
+    kept = [j for j, code in enumerate(regimes.BELT_REGIMES) if code in regimes.REGIMES or counts[j].any()]
+    names = np.array([regimes.BELT_REGIMES[j].name for j in kept])
+    return names, label_variable("regime_share", counts[kept] / ds.sizes[over])
 
 
 def _quantiles(ds: xr.Dataset, name: str, over: str, levels: np.ndarray) -> xr.Variable:
     dims = LABELS[name].dims
     values = np.full((levels.size, *(ds[dim].size for dim in dims)), np.nan)
-    variable = ds[name].variable
+    of_contact = "beta_stick_contact" if name == "beta_stick" and _has(ds, "beta_stick_contact") else name
+    variable = ds[of_contact].variable
     for m, rows in _parts(ds, variable.size):
         part = variable.isel(mu=slice(m, m + 1), r=rows, missing_dims="ignore")
         values[:, m : m + 1, rows] = _ordered(_along(part, (over, *dims)), levels)

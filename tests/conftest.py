@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -28,16 +29,6 @@ LONGEST = (
     "test_interrupts.py", "test_stores_cut.py",
 )  # fmt: skip
 
-REFERENCE = Path(os.environ.get("FRICTIONMAP_REFERENCE", ROOT.parent / "shared" / "reference"))
-
-
-def _rows(name: str) -> tuple[dict, list[dict]]:
-    path = REFERENCE / name
-    if not path.is_file():
-        pytest.skip(f"the reference values {name} are not at hand")
-    content = json.loads(path.read_text())
-    return content["systems"], content["rows"]
-
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the option of the trials with invalid input."""
@@ -51,47 +42,72 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the longest files."""
+    """Mark the tests of the reference data, and begin with the longest files."""
+    for item in items:
+        if "reference_path" in getattr(item, "fixturenames", ()):
+            item.add_marker("reference")
     items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
 
 
 @pytest.fixture(scope="session")
-def boundary_rows() -> list[dict]:
-    """Rows of the 22-digit boundary values for one mass."""
-    return [row for row in _rows("boundaries.json")[1] if row["system"].startswith("sdof")]
+def reference_path() -> Callable[[str], Path]:
+    """Path of a file or folder of the reference data; the test is skipped where it is not at hand.
+
+    No clone holds these data.  Nothing else finds them: whatever uses this gets the marker `reference`.
+    """
+    folder = Path(os.environ.get("FRICTIONMAP_REFERENCE", ROOT.parent / "shared" / "reference"))
+
+    def find(name: str) -> Path:
+        if not (folder / name).exists():
+            pytest.skip(f"the reference data {name} are not at hand")
+        return folder / name
+
+    return find
 
 
 @pytest.fixture(scope="session")
-def all_boundaries() -> tuple[dict, list[dict]]:
+def reference_table(reference_path: Callable[[str], Path]) -> Callable[[str], dict]:
+    """Content of a file of the reference data."""
+    return lambda name: json.loads(reference_path(name).read_text())
+
+
+@pytest.fixture(scope="session")
+def all_boundaries(reference_table: Callable[[str], dict]) -> tuple[dict, list[dict]]:
     """Systems and rows of the 22-digit boundary values."""
-    return _rows("boundaries.json")
+    content = reference_table("boundaries.json")
+    return content["systems"], content["rows"]
 
 
 @pytest.fixture(scope="session")
-def steady_rows() -> list[dict]:
-    """Rows of the 22-digit steady states for one mass."""
-    return [row for row in _rows("steady_states.json")[1] if row["system"].startswith("sdof")]
+def boundary_rows(all_boundaries: tuple[dict, list[dict]]) -> list[dict]:
+    """Rows of the 22-digit boundary values for one mass."""
+    return [row for row in all_boundaries[1] if row["system"].startswith("sdof")]
 
 
 @pytest.fixture(scope="session")
-def all_steady() -> tuple[dict, list[dict]]:
+def all_steady(reference_table: Callable[[str], dict]) -> tuple[dict, list[dict]]:
     """Systems and rows of the 22-digit steady states."""
-    return _rows("steady_states.json")
+    content = reference_table("steady_states.json")
+    return content["systems"], content["rows"]
 
 
 @pytest.fixture(scope="session")
-def measured() -> Path:
+def steady_rows(all_steady: tuple[dict, list[dict]]) -> list[dict]:
+    """Rows of the 22-digit steady states for one mass."""
+    return [row for row in all_steady[1] if row["system"].startswith("sdof")]
+
+
+@pytest.fixture(scope="session")
+def measured(reference_path: Callable[[str], Path]) -> Path:
     """The folder of synthetic measurements with their truths."""
-    folder = REFERENCE / "identification"
-    if not folder.is_dir():
-        pytest.skip("the synthetic measurements are not at hand")
-    return folder
+    return reference_path("identification")
 
 
 @pytest.fixture(scope="session")
-def curve_rows() -> tuple[dict, list[dict]]:
+def curve_rows(reference_table: Callable[[str], dict]) -> tuple[dict, list[dict]]:
     """Systems and rows of the 17-digit quantities of response curves."""
-    return _rows("curves.json")
+    content = reference_table("curves.json")
+    return content["systems"], content["rows"]
 
 
 @pytest.fixture(scope="session")

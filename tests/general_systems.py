@@ -1,10 +1,6 @@
 """Systems of the general engine for tests: from reference rows, and random ones."""
 
-import json
-
 import numpy as np
-import pytest
-from conftest import REFERENCE
 
 import frictionmap as fm
 from frictionmap._kernels.general.problem import Problem
@@ -13,14 +9,6 @@ from frictionmap._kernels.general.steady import REPEATS, one_steady_state
 from frictionmap.general.problem import ties
 
 KINDS = {"wall": "fixed-wall", "base": "joined-base-wall", "masses": "between-masses"}
-
-
-def reference(name):
-    """Content of a file of reference values; the test is skipped where there is none."""
-    path = REFERENCE / name
-    if not path.is_file():
-        pytest.skip(f"the reference values {name} are not at hand")
-    return json.loads(path.read_text())
 
 
 def phasors(harmonics):

@@ -345,7 +345,7 @@ def _maps_along(options: Options, names: Collection[str]) -> "xr.Dataset":
         if given:
             raise InputError(f"cannot use {name} with --against: it draws what two contacts do; omit {name}")
     with opened(options.file) as ds:
-        part = choose(ds, parse_choices(options.at), options.against, contacts=True)
+        part = choose(ds, parse_choices(options.at), options.against, contacts=True, option="--against")
         return part[[name for name in part.data_vars if name in names]].load()
 
 

@@ -5,11 +5,14 @@ They are stored in files: new ones may be added, existing ones must not change.
 
 import re
 from functools import lru_cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from .. import checks, regimes
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 REFERENCES = (
     "Dynamic analysis of mechanical systems with Coulomb friction, doctoral thesis, University of "
@@ -74,7 +77,9 @@ COORDINATES = {
         np.int64, "harmonic of the excitation frequency; 0 is the mean", ("harmonic",), least=0
     ),
     "part": Label(np.str_, "part of a complex number", ("part",), texts=("real", "imaginary")),
-    "outcome": Label(np.str_, "regime", ("outcome",), texts=tuple(code.name for code in regimes.REGIMES)),
+    "outcome": Label(
+        np.str_, "regime", ("outcome",), texts=tuple(code.name for code in regimes.BELT_REGIMES)
+    ),
     "quantile": Label(np.float64, "share of the samples below", ("quantile",), least=0.0, most=1.0),
 }
 
@@ -367,6 +372,12 @@ def with_contact(dims: tuple[str, ...]) -> tuple[str, ...]:
     """Dimensions of a variable that has one value per contact: `contact` follows those of the cells."""
     cell = tuple(dim for dim in dims if dim in CELL)
     return (*cell, "contact", *dims[len(cell) :])
+
+
+def regime_of_choice(ds: "xr.Dataset") -> str:
+    """Name of the variable with the regimes: of the contact that was chosen, or of all together."""
+    chosen = "contact_regime" in ds and "contact" not in ds["contact_regime"].dims
+    return "contact_regime" if chosen else "regime"
 
 
 _PLATEAU = "the load's phase, counted from its maximum; NaN where the maximum is not held over a stop"

@@ -102,8 +102,7 @@ class Responses:
     def _unique(self) -> bool:
         """Whether every cell has one steady state."""
         general = self.system.general
-        own = () if general is None else [group.first.mu for group in general.groups]
-        return self.mu == 1.0 and all(mu in (None, 1.0) for mu in own)
+        return self.mu == 1.0 if general is None else general.has_equal_friction(self.mu)
 
     def on_grid(self, r: np.ndarray, beta: np.ndarray) -> Values:
         """Values on a grid, (n_r, n_beta); r > 0 and beta >= 0 increase."""

@@ -10,6 +10,7 @@ json_schema  the keys as JSON Schema, for editors
 template     commented configurations for a start
 places       output files: reserved before the computation, written completely or not at all
 storage      datasets as NetCDF files
+checksums    checksums of stores: of their chunks, and of the files that describe their arrays
 slices       one point of further axes, selected from a file
 estimates    estimates: read, checked, summarised
 designs      answers to design questions: read, checked, summarised

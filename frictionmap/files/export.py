@@ -85,7 +85,7 @@ def _in_words(variable: xr.DataArray) -> xr.DataArray:
     label = LABELS.get(str(variable.name))
     if label is None or not label.codes or label.flags == "flag_masks":
         return variable
-    names = {code.value: code.name for code in label.codes}
+    names = {code.value: code.name for code in (*label.codes, *label.also)}
     words = variable.astype(object)
     for value, name in names.items():
         words = words.where(variable != value, name)

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import xarray as xr
 
-from ..datasets.labels import LABELS
+from ..datasets.labels import LABELS, regime_of_choice
 from ..datasets.schema import kind
 
 #: Attributes of a file that the summary repeats.
@@ -25,8 +25,8 @@ def summary_json(ds: xr.Dataset) -> str:
         "axes": {str(name): _axis(ds[name]) for name in ds.dims if name in ds.coords},
         "variables": {str(name): _variable(variable) for name, variable in ds.data_vars.items()},
     }
-    if "regime" in ds:
-        found["cells"] = _cells(ds["regime"])
+    if (name := regime_of_choice(ds)) in ds:
+        found["cells"] = _cells(ds[name])
     return json.dumps(found, indent=2, ensure_ascii=False)
 
 

@@ -41,6 +41,7 @@ from ..datasets.schema import (
 )
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError
+from .checksums import RECORD, attributes_of, changed_description, damaged_chunk
 from .designs import design_form
 from .estimates import estimates_form
 from .slices import choose, further_axes
@@ -115,20 +116,24 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
                 f"cannot read {path}: zarr is not installed; run pip install 'frictionmap[zarr]'"
             )
         options = {"engine": "zarr", "consolidated": False, "chunks": None}
+    damaged = _damaged_store if store else _damaged
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a malformed file; what is wrong with it is said below
+        if store:
+            _check_described(path)
         try:
             ds = xr.open_dataset(path, decode_times=False, **options)
         except Exception as error:  # the libraries raise anything over a file that is not what they expect
-            raise _damaged(path, error) from None
+            raise damaged(path, error) from None
         with ds:
             _check_ours(path, ds)
+            ds.attrs.pop(RECORD, None)
             try:
                 yield ds
             except Exception as error:
                 if not _from_the_file(error):
                     raise
-                raise _damaged(path, error) from None
+                raise damaged(path, error) from None
 
 
 def _is_file(path: Path) -> bool:
@@ -151,6 +156,26 @@ def _damaged(path: Path, error: Exception) -> InputError:
     return InputError(
         f"cannot read {path}: it is damaged or not NetCDF "
         f"({checks.one_line(error) if not str(error) else error}); give a file written by frictionmap"
+    )
+
+
+def _check_described(path: Path) -> None:
+    """Refuse a store of which a file that describes it has changed since it was written."""
+    try:
+        changed = changed_description(path, attributes_of(path))
+    except OSError as error:
+        raise _damaged(path, error) from None
+    if changed is not None:
+        raise InputError(f"cannot read {path}: {changed} is damaged; compute the store again")
+
+
+def _damaged_store(path: Path, error: Exception) -> InputError:
+    """Return the error for a store that the library could not read, with the file that is damaged."""
+    if isinstance(error, PermissionError) or (file := damaged_chunk(path)) is None:
+        return _damaged(path, error)
+    return InputError(
+        f"cannot read {path}: {file} is damaged; repeat the command that made the store, which computes its "
+        f"block again"
     )
 
 

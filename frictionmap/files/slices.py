@@ -55,12 +55,13 @@ def further_axes(ds: xr.Dataset) -> list[str]:
 
 
 def choose(
-    ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None, *, contacts: bool = False
-) -> xr.Dataset:
+    ds: xr.Dataset, choices: Mapping[str, float], over: str | None = None, *, contacts: bool = False,
+    option: str = "--over",
+) -> xr.Dataset:  # fmt: skip
     """The part of a dataset with these values of its axes; further axes of one value are taken as they are.
 
-    Title, system and configuration are those of the system there; the axis `over` is left, and with
-    `contacts` the values of all contacts.
+    Title, system and configuration are those of the system there; the axis `over` of an `option` is left, and
+    with `contacts` the values of all contacts unless one is chosen.
 
     Raises
     ------
@@ -80,15 +81,16 @@ def choose(
         dim, found = _found(ds, name, value)
         places[dim] = np.intersect1d(found, places[dim]) if dim in places else found
     if over is not None and over not in further:
-        option = "--against" if contacts else "--over"
         raise InputError(f"unknown further axis of {option} {over!r}; valid: {', '.join(further) or 'none'}")
     if over in places:
         raise InputError(
-            f"cannot use --at {over} with --over {over}: --over takes all its points; use --at for other axes"
+            f"cannot use --at {over} with {option} {over}: {option} takes all its points; "
+            f"use --at for other axes"
         )
     point: dict[str, int] = {}
     rows: dict[str, list[int]] = {}
-    chosen = [dim for dim in further if dim != over and not (contacts and dim == "contact")]
+    left = {over, "contact"} if contacts and "contact" not in places else {over}
+    chosen = [dim for dim in further if dim not in left]
     for dim in (*chosen, *(dim for dim in places if dim not in further)):
         found = places.get(dim, np.arange(ds.sizes[dim]))
         if found.size != 1:

@@ -3,6 +3,7 @@
 import xarray as xr
 
 from ..errors import InputError
+from ..model.contact import checked_contacts
 from ..model.general import General
 from ..model.settings import Solver
 from ..model.system import System
@@ -27,6 +28,17 @@ def stored_general(ds: xr.Dataset) -> General | None:
     """
     system = system_in(str(ds.attrs.get("config", "")))
     return None if system is None else system.general
+
+
+def has_equal_friction(ds: xr.Dataset, mu: float) -> bool:
+    """Whether static and kinetic friction of every contact of a dataset are equal at this mu of its grid.
+
+    The list of contacts says so, also where the matrices are in a file of their own.
+    """
+    contacts = (_table(ds, "system") or {}).get("contacts")
+    if contacts is None:
+        return mu == 1.0
+    return all(one.static_ratio(mu) == 1.0 for one in checked_contacts(contacts))
 
 
 def stored_excitation(ds: xr.Dataset) -> str | None:

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
-from ..datasets.labels import CELL, IN_SI, LABELS, OLDER_NAMES
+from ..datasets.labels import CELL, IN_SI, LABELS, OLDER_NAMES, regime_of_choice
 from ..datasets.physical import describe_scales
 from ..datasets.schema import TEXTS, kind
 from .designs import describe_design
@@ -27,9 +27,10 @@ _LISTS = frozenset(("mu", "mode", "held_mode", "invariant", "dof", "mass_invaria
 
 def describe_map(ds: xr.Dataset) -> str:
     """Describe a map in one line: number of cells by regime."""
-    further = [name for name in ds["regime"].dims if name not in CELL] if "regime" in ds else []
-    cells = int(np.prod([ds.sizes[name] for name in (*further, *CELL)]))
-    return in_cells(cells, _counts(ds["regime"], regimes.BELT_REGIMES) if "regime" in ds else [])
+    name = regime_of_choice(ds)
+    further = [dim for dim in ds[name].dims if dim not in CELL] if name in ds else []
+    cells = int(np.prod([ds.sizes[dim] for dim in (*further, *CELL)]))
+    return in_cells(cells, _counts(ds[name], regimes.BELT_REGIMES) if name in ds else [])
 
 
 def in_cells(cells: int, counts: Sequence[tuple[regimes.Code, int]]) -> str:
@@ -74,9 +75,8 @@ def _plain(code: regimes.Code) -> str:
 
 def describe_response(ds: xr.Dataset) -> str:
     """Describe a response in one line: regime, stops, amplitude, period, as far as available."""
-    regime = next(
-        (code for code in regimes.BELT_REGIMES if "regime" in ds and code.value == int(ds["regime"])), None
-    )
+    name = regime_of_choice(ds)
+    regime = next((code for code in regimes.BELT_REGIMES if name in ds and code.value == int(ds[name])), None)
     words = [_plain(regime)] if regime else []
     moving = regime is None or regime.value != regimes.PERMANENT_STICKING
     if regime is None or regime.value == regimes.STICK_SLIP:

@@ -8,6 +8,7 @@ held             forces in contacts that do not slide, and the boundaries that f
 loops            permanent sticking of contacts that close a loop
 boundaries       boundaries over r: permanent sticking, no stops, one-way sliding on belts
 partial          least friction at which one contact sticks while the others move
+starts           initial states: at rest, or in a large sliding motion
 maps             the cells of a map, on several threads
 dataset          maps and boundaries as labelled variables
 recorded         one steady state and the series of its steps, from the kernels

@@ -102,12 +102,13 @@ def general_curves(
     count = general_of(system).count
     limits = find_boundaries(system, r, mu)
     problem, modal = problem_of(system, r)
+    unique = [general_of(system).has_equal_friction(float(value)) for value in mu]
     shape = (mu.size, r.size, beta.size)
     tables: dict[str, np.ndarray] = {}
     for done, (m, i, b) in enumerate(np.ndindex(shape), 1):
         values: dict[str, np.ndarray] = {"status": np.array(regimes.NOT_REACHED)}
         try:
-            if mu[m] == 1.0 and solver.skip == "exact" and beta[b] >= limits.beta_stick[m, i]:
+            if unique[m] and solver.skip == "exact" and beta[b] >= limits.beta_stick[m, i]:
                 values = _stuck(system, asked, float(r[i]))
             else:
                 values = _cell(

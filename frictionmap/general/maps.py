@@ -6,14 +6,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from .. import regimes
-from .._kernels.engine.policies import MOVING_START
 from .._kernels.general.fill import Cells, Grid, fill_rows
 from ..jobs import Job, Progress, Watch, run_jobs
 from ..model.settings import Solver
 from ..model.system import System
-from .boundaries import friction_lines, rest_states, sliding_states
+from .boundaries import friction_lines
 from .held import held_ranges
 from .problem import general_of, problem_of, static_offset
+from .starts import initial_states
 
 #: Cells of a job at least, in whole rows: a job costs as much as a few cells.
 _IN_A_JOB = 64
@@ -78,9 +78,7 @@ def solve_cells(
     unique = (static == kinetic).all(axis=(1, 2)) & (solver.skip == "exact")
     sticks_from = [np.searchsorted(beta[i], beta_stick[:, i]) for i in range(r.size)]
     stuck_from = np.where(unique[:, np.newaxis], np.stack(sticks_from, axis=1), many)
-    starts = rest_states(system, modal, r)
-    if solver.start == "moving":
-        starts = sliding_states(problem, r, MOVING_START)
+    starts = initial_states(system, problem, modal, solver.start)
     grid = Grid(beta, kinetic, static, stuck_from, starts, places, float(solver.cycles), solver.tolerance)
     count = system.n if masses else 0
     found = allocate((mu.size, r.size, many), general.count, count)

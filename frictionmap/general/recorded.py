@@ -34,7 +34,7 @@ def recorded_state(
     Parameters
     ----------
     problem, i, friction, masses : see `one_steady_state`
-    start : (2, m) modes and their velocities q' at tau = 0
+    start : initial state, see `from_rest`
     limits : periods followed at most, and tolerance
     most : steps for which there is room at first
     settled : see `one_steady_state`

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import regimes
-from .._kernels.engine.policies import MOVING_START
 from .._kernels.general.follow import (
     MOVED,
     RELEASE_ORDER,
@@ -25,10 +24,11 @@ from .._kernels.long_periods import WINDOW
 from ..errors import NoSteadyState
 from ..model.settings import Solver
 from ..model.system import System
-from .boundaries import friction_lines, rest_states, sliding_states
+from .boundaries import friction_lines
 from .held import least_static_friction
 from .problem import ModalSystem, problem_of, static_offset
 from .recorded import recorded_state
+from .starts import initial_states
 
 #: Steps for which there is room at first.
 _FIRST = 512
@@ -180,9 +180,7 @@ def cell_steps(
     """Find the steady state at r[i] of a problem; see `steps_of`."""
     kinetic, static = friction_lines(system, np.array([mu]))
     friction = Friction(kinetic @ np.array([beta, 1.0]), static[0] @ np.array([beta, 1.0]))
-    start = rest_states(system, modal, problem.r[i : i + 1])[0]
-    if solver.start == "moving":
-        start = sliding_states(problem, problem.r, MOVING_START)[i]
+    start = initial_states(system, problem, modal, solver.start)[i]
     phi = np.ascontiguousarray(modal.phi)
     found, halves, multiplier, counts, record, h, count = recorded_state(
         problem, i, friction, start, (solver.cycles, solver.tolerance), phi, _FIRST

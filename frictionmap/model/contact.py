@@ -133,6 +133,12 @@ class Contact:
         """Its name, or its kind and masses."""
         return self.name or f"{self.kind} {'-'.join(map(str, self.masses))}"  # type: ignore[arg-type]
 
+    def static_ratio(self, mu: Any) -> Any:
+        """Ratio of static to kinetic friction: its own, or that of the grid; 1 with a spring."""
+        if self.stiffness is not None:
+            return 1.0
+        return mu if self.mu is None else self.mu
+
     @property
     def elements(self) -> tuple["Contact", ...]:
         """The contacts of one spring that a bank consists of; the contact itself if it is none."""

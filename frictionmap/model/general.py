@@ -130,8 +130,7 @@ class Group:
         for one in self.members:
             own: Any = one.ratio * beta if one.force is None else one.force  # type: ignore[operator]
             kinetic = kinetic + own
-            elastic = one.stiffness is not None
-            static = static + own * (1.0 if elastic else mu if one.mu is None else one.mu)
+            static = static + own * one.static_ratio(mu)
         return kinetic, static
 
 
@@ -165,6 +164,10 @@ class General:
     def elastic(self) -> np.ndarray:
         """Whether each contact has a spring, (N,) bool."""
         return np.array([group.stiffness is not None for group in self.groups])
+
+    def has_equal_friction(self, mu: float) -> bool:
+        """Whether static and kinetic friction of every contact are equal at this mu of the grid."""
+        return all(one.static_ratio(mu) == 1.0 for group in self.groups for one in group.members)
 
     @property
     def merged(self) -> str:

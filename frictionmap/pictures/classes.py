@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import regimes
+from ..datasets.labels import regime_of_choice
 from .palette import (  # fmt: skip
     CLASSES,
     CONTINUOUS,
@@ -133,10 +134,8 @@ def classes(ds: "xr.Dataset", by: Counted | None = None) -> np.ndarray:
     by : `counted`, of the map that the mu is of
     """
     by = by or counted(ds)
-    own = "contact_regime" in ds and "contact" not in ds.dims
     regime, stops, status = (
-        ds[name].values if name in ds else None
-        for name in ("contact_regime" if own else "regime", by.variable, "status")
+        ds[name].values if name in ds else None for name in (regime_of_choice(ds), by.variable, "status")
     )
     found = np.empty((ds.sizes["r"], ds.sizes["beta"]), dtype=np.uint8)
     for block in blocks(found.shape):

@@ -66,9 +66,9 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        On (mu, r, beta): the requested outputs, and `status` if any cell is unresolved or averaged.  On (mu,
-        r): `beta_lim`, `beta_lim_modal`, `beta_stick`.  Unresolved cells have regime -1; `status` gives the
-        reason.
+        On (mu, r, beta): the requested outputs, and `status` if any cell is unresolved or averaged; with
+        several contacts, springs, belts or loads of several harmonics always.  On (mu, r): `beta_lim`,
+        `beta_lim_modal`, `beta_stick`.  Unresolved cells have regime -1; `status` gives the reason.
 
         With units also `frequency(r)` [Hz], `friction_force(beta)` [N], and every quantity in m, N or J in
         addition to its ratio, such as `contact_amplitude_m` and `beta_lim_N`.  For a reduced structure the
@@ -105,7 +105,9 @@ def swept(
     else:
         checks.cells(grid["mu"].size, grid["r"].size, grid["beta"].size, points=variations.count)
         ds = _study(variations, grid, solver, threads, progress, watch)
-    if "status" not in solver.outputs and not ds["status"].values.any():
+    first = system if variations is None else variations.at(next(variations.points()))
+    asked = "status" in solver.outputs or first.general is not None
+    if not asked and not ds["status"].values.any():
         ds = ds.drop_vars("status")  # kept where any cell is unresolved or averaged
     title = "Motion regimes and stops per cycle"
     ds = stamp(

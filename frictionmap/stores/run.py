@@ -47,8 +47,8 @@ def fill_store(
     Raises
     ------
     InputError
-        There is a store of another study or version (without `overwrite`), or something else of that name,
-        it is protected from writing and not done, or another run is at it.
+        There is a store of another study or state of the program (without `overwrite`), or something else of
+        that name, it is protected from writing and not done, or another run is at it.
     OSError
         A block cannot be written; those before it are kept.
     """
@@ -65,6 +65,7 @@ def fill_store(
         remove_strays(path)
         store = Store(path, study)
         done = store.done()
+        store.mend_axes()
         if not done.all():
             _check_writable(path)
         claim.kept = lambda: (

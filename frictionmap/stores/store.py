@@ -15,13 +15,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import checks
+from .._kernels.compiler.notices import warn_once
 from ..datasets.labels import REFERENCES
 from ..datasets.physical import scale_attributes
 from ..datasets.provenance import configuration, excitation_of
 from ..errors import InputError
+from ..files.checksums import RECORD, changed_description, chunk_is_damaged, chunks_of, record_of
 from ..files.config import Config, config_of, parse
 from ..model.matrices import Matrices
-from ..version import __version__
+from ..version import __version__, state
 from .layout import MARKS, Array, arrays_of, chunk, coordinates_of, plain, region
 from .study import Batch, Cut, Study, study_of
 
@@ -88,19 +90,37 @@ class Store:
             raise _damaged(self.path, name, error) from None
 
     def done(self) -> np.ndarray:
-        """Blocks marked as done whose chunks all exist."""
+        """Blocks marked as done whose chunks all exist and are not damaged; their files are read once."""
+        for file in chunks_of(self.path / MARKS):
+            if chunk_is_damaged(file):
+                warn_once(f"{file} is damaged; its blocks are computed again")
+                file.unlink()
         done = self.marks()
         for batch in self.study.batches():
             done[batch.places] &= not done[batch.places].any() or self._is_whole(batch)
         return done
 
     def _is_whole(self, batch: Batch) -> bool:
-        """Whether all chunks of a batch exist."""
+        """Whether all chunks of a batch exist, with their checksums; warns of those that are damaged."""
         for name, array in self._arrays.items():
             place = chunk(region(self.study, batch, array), array)
-            if not (self.path / name / self._writable[name].metadata.encode_chunk_key(place)).exists():
+            file = self.path / name / self._writable[name].metadata.encode_chunk_key(place)
+            if not file.exists():
+                return False
+            if chunk_is_damaged(file):
+                warn_once(f"{file} is damaged; its block is computed again")
                 return False
         return True
+
+    def mend_axes(self) -> None:
+        """Write the axes again whose chunks are damaged or missing."""
+        for name, variable in coordinates_of(self.study, self.study.sample).items():
+            key = self._group[name].metadata.encode_chunk_key((0,) * variable.ndim)
+            file = self.path / name / key
+            damaged = file.exists() and chunk_is_damaged(file)
+            if damaged or not np.array_equal(self._group[name][...], variable.values):
+                warn_once(f"{file} is damaged; it is written again")
+                self._group[name][...] = np.asarray(variable.values)
 
     def write(self, batch: Batch, found: Mapping[str, np.ndarray]) -> None:
         """Write a batch, whole chunks only, and then its marks."""
@@ -138,7 +158,8 @@ def make_store(path: Path, study: Study, title: str) -> None:
         attributes = {
             "Conventions": "CF-1.11", "title": title, "source": _SOURCE, "references": REFERENCES,
             "system": study.variations.describe(), "excitation": excitation_of(study.system), "config": text,
-            **study.system.costs(study.r), **study.reduction_check, **scale_attributes(study.scales),
+            "state": state(), **study.system.costs(study.r), **study.reduction_check,
+            **scale_attributes(study.scales),
         }  # fmt: skip
         group = zarr.create_group(away, attributes=attributes)
         for name, array in arrays_of(study, sample).items():
@@ -159,6 +180,7 @@ def make_store(path: Path, study: Study, title: str) -> None:
                 {},
             )
             _make_array(group, f"{_MATRICES}/{name}", like)[...] = matrix
+        group.attrs[RECORD] = record_of(away, attributes)
         if path.exists():
             path.rename(_away(path))
         away.rename(path)
@@ -171,12 +193,12 @@ def make_store(path: Path, study: Study, title: str) -> None:
 
 
 def _make_array(group: "zarr.Group", name: str, array: Array) -> "zarr.Array":
-    from zarr.codecs import BloscCodec
+    from zarr.codecs import BloscCodec, Crc32cCodec
 
-    codec = BloscCodec(cname="lz4", clevel=5, shuffle="shuffle", typesize=array.dtype.itemsize)
+    blosc = BloscCodec(cname="lz4", clevel=5, shuffle="shuffle", typesize=array.dtype.itemsize)
     return group.create_array(
         name, shape=array.shape, chunks=array.chunks, dtype=array.dtype, fill_value=array.fill,
-        compressors=codec, dimension_names=array.dims, attributes=dict(array.attributes),
+        compressors=(blosc, Crc32cCodec()), dimension_names=array.dims, attributes=dict(array.attributes),
     )  # fmt: skip
 
 
@@ -238,15 +260,18 @@ def _damaged(path: Path, name: str, error: Exception) -> InputError:
 
 
 def _config(path: Path) -> Config:
-    """Read the configuration of a store; refuse other folders, and stores of another version."""
+    """Read the configuration of a store; refuse other folders, and stores of another state of the program."""
     zarr = _zarr()
     source: object = "something else"
     try:
         group = zarr.open_group(path, mode="r", use_consolidated=False)
         source = group.attrs.get("source", source)
         if source == _SOURCE:
-            found = {name: np.asarray(array[...]) for name, array in _arrays_in(group, _MATRICES)}
+            _check_described(path, group.attrs)
+            found = {name: _matrix(path, name, array) for name, array in _arrays_in(group, _MATRICES)}
             return config_of(str(group.attrs["config"]), {"matrices": found} if found else {})
+    except InputError:
+        raise
     except PermissionError as error:
         raise InputError(
             f"cannot resume {path}: {error.filename} is read-protected; make it readable or use another -o"
@@ -256,6 +281,27 @@ def _config(path: Path) -> Config:
     raise InputError(
         f"cannot resume {path}: written by {source}, this is {_SOURCE}; use --overwrite or another -o"
     )
+
+
+def _check_described(path: Path, attributes: Mapping[str, Any]) -> None:
+    """Refuse a store that another state of the program has begun, or whose description is damaged."""
+    changed = changed_description(path, attributes)
+    if changed is not None:
+        raise InputError(f"cannot resume {path}: {changed} is damaged; use --overwrite or another -o")
+    there = attributes.get("state", "unknown")
+    if there != state():
+        raise InputError(
+            f"cannot resume {path}: it was begun by another state of {_SOURCE} ({there}, this is {state()}), "
+            "whose cells may differ; use --overwrite or another -o"
+        )
+
+
+def _matrix(path: Path, name: str, array: "zarr.Array") -> np.ndarray:
+    """Read a matrix of a store."""
+    try:
+        return np.asarray(array[...])
+    except ValueError as error:
+        raise _damaged(path, f"{_MATRICES}/{name}", error) from None
 
 
 def _arrays_in(group: "zarr.Group", name: str) -> list[tuple[str, "zarr.Array"]]:

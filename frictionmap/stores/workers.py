@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from .._kernels.compiler.folders import folders
 from ..errors import InputError
-from ..version import __version__
+from ..version import __version__, state
 from .run import Fill
 from .store import Store, opened
 from .study import Batch
@@ -101,8 +101,8 @@ def compute(path: str, digest: str, first: tuple[int, ...]) -> tuple[int, ...]:
     return first
 
 
-def task(version: str) -> Callable[[str, str, tuple[int, ...]], tuple[int, ...]]:
-    """Return `compute` in the form sent to workers; a worker without this version of the package says so.
+def task(version: str, state: str) -> Callable[[str, str, tuple[int, ...]], tuple[int, ...]]:
+    """Return `compute` in the form sent to workers; a worker without this state of the package says so.
 
     It is in no module, and so sent as code: what is sent as the name of a module ends a worker that lacks it.
     """
@@ -114,10 +114,14 @@ def task(version: str) -> Callable[[str, str, tuple[int, ...]], tuple[int, ...]]
         from distributed import get_worker
 
         try:
-            found = import_module("frictionmap.version").__version__
+            there = import_module("frictionmap.version")
             import_module("zarr")
             compute = import_module("frictionmap.stores.workers").compute
-            lacks = "" if found == version else f"frictionmap has version {found} there"
+            lacks = ""
+            if there.__version__ != version:
+                lacks = f"frictionmap has version {there.__version__} there"
+            elif there.state() != state:
+                lacks = f"frictionmap is in state {there.state()} there, here in {state}"
         except ImportError as error:
             lacks = str(error)
         if lacks:
@@ -221,7 +225,7 @@ def _wait(client: "Client", address: str, say: Callable[[str], None]) -> None:
 
 def _on(client: "Client", store: Store, batches: Iterable[Batch]) -> Iterator[Batch]:
     """Yield batches as they are finished; a few more are submitted than there are workers."""
-    path, digest, sent = str(store.path.resolve()), store.digest, task(__version__)
+    path, digest, sent = str(store.path.resolve()), store.digest, task(__version__, state())
     waiting = deque(batch.first for batch in batches)
     places: dict[str, tuple[int, ...]] = {}
     losses: Counter[tuple[int, ...]] = Counter()

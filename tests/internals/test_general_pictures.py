@@ -16,6 +16,7 @@ from frictionmap.files.storage import write_netcdf
 from frictionmap.pictures import classes, palette
 from frictionmap.pictures.grids import Grid
 from frictionmap.pictures.maps.boundary_curves import further_ranges, through_cells
+from frictionmap.pictures.maps.quantity_map import QuantityImage
 from frictionmap.pictures.maps.regime_map import RegimeImage
 from frictionmap.pictures.motions.history import plot_response
 from frictionmap.pictures.motions.traces import load_trace, traces_of
@@ -146,6 +147,17 @@ def test_a_chosen_contact_has_its_own_stops_and_name():
     np.testing.assert_array_equal(own.get_ydata(), [0.1, 0.2])
 
 
+def test_numbers_of_contacts_are_beside_classes_of_their_own():
+    """A contact that is stuck while the other one moves has no number of stops, and is coloured as stuck."""
+    axes = plot.plot_quantity(two_contacts(), "stops_per_cycle")
+    images = [one for ax in axes[:2] for one in ax.get_children() if isinstance(one, QuantityImage)]
+    stuck = palette.colour_table()[palette.STUCK]
+    found = [(image.colours() == stuck).all(axis=-1).tolist() for image in images]
+    assert found == [[[False, True], [True, False]], [[False, True], [False, False]]]
+    assert [line.get_label() for line in axes[0].lines].count(palette.STICK_CONTACT["label"]) == 1
+    assert "permanent sticking" in labels_of(axes)
+
+
 def test_contacts_with_and_without_spring_count_what_they_have():
     both = two_contacts().drop_vars(["beta_lim", "beta_stick", "beta_stick_contact"])
     slips = both["stops_per_cycle"].where(both["contact"] == 1)
@@ -217,6 +229,18 @@ def test_boundaries_of_elastic_contacts():
     axes = plot.plot_boundaries(ds)
     assert labels_of(axes) == ["slips", "no slip", palette.NO_SLIP["label"]]
     assert len([one for one in axes[0].collections if isinstance(one, PolyCollection)]) == 2
+
+
+@pytest.mark.parametrize(("own", "mu", "exact"), [(2.0, 1.0, False), (1.0, 1.5, True), (None, 1.5, False)])
+def test_regions_are_exact_where_the_contacts_have_no_static_excess(own, mu, exact):
+    """What counts is the mu of each contact; that of the grid is for those without their own."""
+    contacts = [fm.Contact("fixed-wall", 1, mu=own), fm.Contact("between-masses", (1, 2), mu=own)]
+    ds = fm.boundaries(
+        fm.System(contacts=contacts, mass_ratios=[1, 1], stiffness_ratios=[1, 1]), [0.5, 0.8], mu
+    )
+    axes = plot.plot_boundaries(ds)
+    assert ("permanent sticking" in labels_of(axes)) == exact
+    assert ("sticking possible" in labels_of(axes)) != exact
 
 
 # Files

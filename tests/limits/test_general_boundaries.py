@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from general_systems import KINDS, chain, phasors, reference
+from general_systems import KINDS, chain, phasors
 
 import frictionmap as fm
 from frictionmap.general.boundaries import find_boundaries
@@ -98,8 +98,8 @@ def check_end(system, r, found, wanted, inside):
     return 1
 
 
-def test_reentrant_intervals_to_nine_digits():
-    for row in reference("reentrant.json").values():
+def test_reentrant_intervals_to_nine_digits(reference_table):
+    for row in reference_table("reentrant.json").values():
         load = {int(n): complex(*value) for n, value in row["load"].items()}
         system = fm.System(damping_ratios=row["zeta"], load_harmonics=load)
         ds = fm.boundaries(system, [row["r"]])
@@ -113,10 +113,10 @@ def test_reentrant_intervals_to_nine_digits():
         assert ds.beta_stick.item() == pytest.approx(row["beta_stick"], rel=1e-12)
 
 
-def test_first_intervals_of_periodic_loads():
-    systems = reference("loads.json")["systems"]
+def test_first_intervals_of_periodic_loads(reference_table):
+    systems = reference_table("loads.json")["systems"]
     nearer = 0
-    for row in reference("loads_boundaries.json")["rows"]:
+    for row in reference_table("loads_boundaries.json")["rows"]:
         system = chain(
             systems[row["system"]], row["zeta"], load_harmonics=phasors(row["harmonics"]),
             wall_velocity=row["wall_velocity"],
@@ -128,9 +128,9 @@ def test_first_intervals_of_periodic_loads():
     assert nearer <= 4
 
 
-def test_rays_of_several_contacts():
+def test_rays_of_several_contacts(reference_table):
     """Walls that move with the base are left out: there the reference load is not that of the base."""
-    for row in reference("contacts.json")["rays"]:
+    for row in reference_table("contacts.json")["rays"]:
         if any(row["s"]):
             continue
         given = {key: np.array(row[name]) for key, name in (("M", "M"), ("K", "K"), ("C", "C1"))}
@@ -145,8 +145,8 @@ def test_rays_of_several_contacts():
         assert ds.beta_lim.item() == pytest.approx(row["scale_lim"], rel=tolerance), row["id"]
 
 
-def test_no_slip_of_elastic_contacts():
-    content = reference("elastic.json")
+def test_no_slip_of_elastic_contacts(reference_table):
+    content = reference_table("elastic.json")
     for row in content["rows"]:
         if row["wall_velocity"]:
             continue

@@ -6,9 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from general_systems import KINDS, reference
+from general_systems import KINDS
 
 import frictionmap as fm
+from frictionmap.design.responses import Response, Responses
+from frictionmap.general.problem import problem_of
+from frictionmap.general.starts import initial_states
 
 OUTPUTS = [
     "regime",
@@ -71,6 +74,23 @@ def test_one_rigid_contact_is_that_of_the_other_engine(kind, masses, system):
     limits, wanted = fm.boundaries(general, r, [1.0, 1.4]), fm.boundaries(plain, r, [1.0, 1.4])
     assert np.allclose(limits.beta_stick, wanted.beta_stick, rtol=1e-11, atol=1e-12)
     assert np.allclose(limits.beta_lim, wanted.beta_lim, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("kind", "masses", "system"),
+    [*ONE_CONTACT, ("fixed-wall", (2,), {**CHAIN, "excitation": "base", "damping_reference": "base"})],
+)
+def test_the_moving_start_is_that_of_the_other_engine(kind, masses, system):
+    """At mu = 2, where the start decides in many cells."""
+    plain = fm.System(kind, masses, **system)
+    general = fm.System(contacts=[fm.Contact(kind, masses)], **system)
+    r, beta = np.linspace(0.23, 2.2, 9), np.linspace(0.02, 1.6, 9)
+    for mu in (1.4, 2.0):
+        found, wanted = (
+            fm.sweep(one, r, beta, mu, outputs=OUTPUTS, start="moving") for one in (general, plain)
+        )
+        agree(found, wanted)
+        np.testing.assert_array_equal(found.regime, wanted.regime)
 
 
 def test_harmonics_and_works_are_those_of_the_other_engine():
@@ -139,6 +159,31 @@ def test_the_order_of_contacts_does_not_matter():
     for name in ("stops_per_cycle", "contact_amplitude", "stuck_fraction"):
         turned = b[name].isel(contact=[1, 0]).values
         assert np.allclose(a[name].values, turned, rtol=0.0, atol=1e-12, equal_nan=True), name
+
+
+@pytest.mark.parametrize("load", [{}, {"load_harmonics": {1: [0.5, 1.0], 2: [0.4, 0.0]}}])
+def test_the_moving_start_does_not_depend_on_the_order_of_contacts(load):
+    """It has no displacement in any contact, and slides one of them upwards, whichever is named first."""
+    wall, joint = fm.Contact("fixed-wall", 1), fm.Contact("between-masses", (1, 2), ratio=0.4)
+    r = np.array([0.45, 0.9, 1.5])
+    found = []
+    for contacts in ([wall, joint], [joint, wall]):
+        system = two(contacts, **load)
+        problem, modal = problem_of(system, r)
+        state = initial_states(system, problem, modal, "moving")
+        x, v = state[:, 0] @ modal.phi.T, state[:, 1] @ modal.phi.T
+        assert not x.any()
+        z = v @ system.general.vectors.T
+        assert (z.max(axis=1) > 0.0).all()
+        assert (state[:, 2] == state[:, 2, :1]).all()
+        found.append((v, state[:, 2]))
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-12)
+    a, b = (
+        cells(two(contacts, **load), mu=1.8, start="moving") for contacts in ([wall, joint], [joint, wall])
+    )
+    np.testing.assert_array_equal(a.regime, b.regime)
+    np.testing.assert_array_equal(a.contact_regime, b.contact_regime.isel(contact=[1, 0]))
 
 
 def test_a_load_turned_by_half_a_period_turns_the_motion():
@@ -262,9 +307,9 @@ def test_stiff_contacts_approach_the_rigid_one():
     assert 50.0 < errors[0] / errors[1] < 200.0
 
 
-def test_partial_sticking_begins_at_half_the_range_of_the_force():
+def test_partial_sticking_begins_at_half_the_range_of_the_force(reference_table):
     """A contact rests beside others that slide from this friction on (theory.md 11)."""
-    for row in reference("contacts.json")["partial"]:
+    for row in reference_table("contacts.json")["partial"]:
         given = {key: np.array(row[name]) for key, name in (("M", "M"), ("K", "K"), ("C", "C1"))}
         for factor, regime in ((1.0 - 1e-3, 1), (1.0 + 1e-3, 0)):
             contacts = []
@@ -310,3 +355,34 @@ def test_elements_of_a_bank_stop_slipping_together():
     )  # fmt: skip
     assert (ds.regime >= 0).all()
     assert ds.slips_per_cycle.max() <= 8.0
+
+
+@pytest.mark.parametrize(
+    ("own", "mu"),
+    [
+        ([("fixed-wall", 1, 1.0, 2.0), ("fixed-wall", 2, 0.5, 2.0)], 2.0),
+        ([("fixed-wall", 1, 0.75, 1.0), ("fixed-wall", 1, 0.25, 3.0), ("fixed-wall", 2, 0.5, 1.5)], 1.5),
+    ],
+)
+def test_a_mu_of_the_contacts_themselves_is_a_mu_of_the_grid(own, mu):
+    """Parallel contacts have the sum of their static friction; whatever asks for mu is answered alike."""
+    shared = {"mass_ratios": [1.0, 1.0], "stiffness_ratios": [1.0, 1.0], "damping_ratios": 0.02}
+    contacts = [fm.Contact(kind, mass, ratio=ratio, mu=given) for kind, mass, ratio, given in own]
+    by_contact = fm.System(contacts=contacts, **shared)
+    walls = [fm.Contact("fixed-wall", 1), fm.Contact("fixed-wall", 2, ratio=0.5)]
+    by_grid = fm.System(contacts=walls, **shared)
+    r, beta = [0.5], [0.51, 0.7]
+    for function, further in (
+        (fm.sweep, {"start": "moving"}),
+        (fm.sweep, {}),
+        (fm.curves, {"start": "moving", "quantities": ["amplitude"]}),
+    ):
+        found = function(by_contact, r, beta, 1.0, **further)
+        wanted = function(by_grid, r, beta, mu, **further)
+        for name in wanted.data_vars:
+            np.testing.assert_array_equal(found[name], wanted[name], name)
+    # questions of design count both starts where they matter
+    response = Response("amplitude", 1, 1)
+    assert len(Responses(by_contact, response, 1.0, None)._solvers) == 2
+    equal = fm.System(contacts=[replace(one, mu=1.0) for one in contacts], **shared)
+    assert len(Responses(equal, response, mu, None)._solvers) == 1

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from general_systems import KINDS, reference
+from general_systems import KINDS
 from scipy.optimize import linprog
 
 import frictionmap as fm
@@ -64,8 +64,8 @@ def test_random_loops_against_linear_programs(seed):
     assert found == pytest.approx(wanted, rel=2e-5)  # 720 phases
 
 
-def test_reference_loops():
-    for row in reference("contacts.json")["redundant"]:
+def test_reference_loops(reference_table):
+    for row in reference_table("contacts.json")["redundant"]:
         contacts = [
             fm.Contact(KINDS[kind], masses, ratio=ratio, mu=mu)
             for (kind, *masses), ratio, mu in zip(row["contacts"], row["ray"], row["mu"], strict=True)

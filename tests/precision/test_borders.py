@@ -4,7 +4,6 @@ import functools
 
 import numpy as np
 import pytest
-from general_systems import reference
 
 import frictionmap as fm
 from frictionmap.stop_counts.beginnings import HALVES, begun, orbits_beside
@@ -51,9 +50,9 @@ def test_points_of_borders(system, kind, below, above, r, beta):
     np.testing.assert_array_equal(counts_at(Source(system, 1.0), np.array([r, r]), beside), [below, above])
 
 
-def test_reference_points_of_borders():
+def test_reference_points_of_borders(reference_table):
     """All points of mu = 1, to the digits of a bisection."""
-    points = [row for row in reference("borders.json")["points"] if row["system"] in SYSTEMS]
+    points = [row for row in reference_table("borders.json")["points"] if row["system"] in SYSTEMS]
     assert len(points) > 250
     missing = []
     for row in points:
@@ -154,13 +153,13 @@ def test_points_of_existence(system, kind, r, beta):
     assert place.unknowns[-1] == pytest.approx(beta, rel=1e-9)
 
 
-def test_reference_points_of_existence():
+def test_reference_points_of_existence(reference_table):
     """All points of mu > 1.
 
     Missing are orbits that follow each other within 1e-6 of a border, one with every period, and some that
     neither start reaches.
     """
-    points = [row for row in reference("borders.json")["points"] if row["mu"] > 1.0]
+    points = [row for row in reference_table("borders.json")["points"] if row["mu"] > 1.0]
     assert len(points) > 80
     missing = []
     for row in points:

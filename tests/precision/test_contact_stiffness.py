@@ -1,12 +1,10 @@
 """The spring in a contact as an unknown of `forced` and `record`: motions found without the package."""
 
 import functools
-import json
 
 import numpy as np
 import pytest
 import springs
-from conftest import REFERENCE
 
 import frictionmap as fm
 from benchmarks.references.shaken import Rig, steady
@@ -82,16 +80,27 @@ def test_first_harmonics_are_those_integrated(truth):
     assert marched.first_harmonic() == pytest.approx(expected, abs=1e-8)
 
 
-def test_first_harmonics_of_the_reference_table():
-    """Those of one harmonic, which are of one mass; the table has it twice, for the mass and the contact."""
-    content = json.loads((REFERENCE / "elastic.json").read_text())
-    rows = [row for row in content["rows"] if list(row["harmonics"]) == ["1"] and not row["wall_velocity"]]
-    assert len(rows) > 5
-    for row in rows:
-        assert (row["system"], row["harmonics"]["1"]) == ("sdof", [[1.0, 0.0]])
-        system = fm.System(damping_ratios=row["zeta"], contact_stiffness=row["kt"])
-        found = steady_phasors(system, np.array([row["r"]]), np.array([row["beta"]]))[0][0, 0]
-        assert found == pytest.approx(complex(*row["harmonic_1"][0]), rel=1e-10)
+#: One mass under a force, from an independent program: r, zeta, beta, kt, real and imaginary part of X_1.
+FIRST_HARMONICS = [
+    (1.525, 0.05, 1.09078, 10.0, 0.1177040552434, -0.01116733004972),
+    (1.103, 0.01, 0.198853, 100.0, -4.073214068082, -1.517039958476),
+    (1.061, 0.05, 0.169604, 0.3, -3.444092391461, -4.410680788984),
+    (1.075, 0.01, 0.547908, 30.0, -2.606145811616, -3.323881663516),
+    (2.073, 0.05, 0.0244838, 0.1, -0.3096951621368, -0.02202755919691),
+    (0.398, 0.01, 0.510759, 1.0, 0.567544726666, -0.1007884337154),
+    (0.309, 0.05, 0.375061, 10.0, 0.8663271248275, -0.4275169206505),
+    (0.669, 0.01, 0.280658, 0.3, 1.244495862363, -0.13084598513),
+    (1.391, 0.05, 0.596948, 100.0, -0.3170749545076, -0.492538208684),
+    (1.513, 0.01, 0.241965, 0.3, -0.9706163169891, -0.07998250464234),
+    (0.52, 0.05, 0.329264, 3.0, 0.9788968849969, -0.5162816505599),
+]
+
+
+@pytest.mark.parametrize(("r", "zeta", "beta", "kt", "real", "imaginary"), FIRST_HARMONICS)
+def test_first_harmonics_of_an_independent_program(r, zeta, beta, kt, real, imaginary):
+    system = fm.System(damping_ratios=zeta, contact_stiffness=kt)
+    found = steady_phasors(system, np.array([r]), np.array([beta]))[0][0, 0]
+    assert found == pytest.approx(complex(real, imaginary), rel=1e-10)
 
 
 def test_a_contact_that_does_not_slip_and_one_without_friction_are_linear():

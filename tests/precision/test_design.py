@@ -1,11 +1,9 @@
 """Design questions against values of independent programs, brute force and closed forms."""
 
-import functools
 import itertools
 
 import numpy as np
 import pytest
-from general_systems import reference
 
 import frictionmap as fm
 from frictionmap.design.performance import Peaks
@@ -63,16 +61,13 @@ def test_least_peaks_of_elastic_contacts(system, band, mass, beta, peak, kind):
     assert_optimum(fm.design.least_peak(fm.System(**system), band, mass=mass), beta, peak, kind)
 
 
-@functools.cache
-def rows():
-    return reference("design.json")["rows"]
+@pytest.fixture
+def rows_of(reference_table):
+    rows = reference_table("design.json")["rows"]
+    return lambda *words: [row for row in rows if row["question"].startswith(words)]
 
 
-def rows_of(*words):
-    return [row for row in rows() if any(row["question"].startswith(word) for word in words)]
-
-
-def test_reference_optima():
+def test_reference_optima(rows_of):
     for row in rows_of("least-peak"):
         ds = fm.design.least_peak(
             system_of(row), row["band"], mass=row["mass"], mu=row["mu"], spread=row.get("robust", 0)
@@ -91,7 +86,7 @@ def test_reference_optima():
         np.testing.assert_allclose(changes, expected, rtol=1e-6)
 
 
-def test_reference_limits_over_bands():
+def test_reference_limits_over_bands(rows_of):
     for row in rows_of("most friction"):
         ds = fm.design.no_stop(system_of(row), row["band"], row["mu"])
         assert ds.beta.item() == pytest.approx(row["beta"], rel=1e-9)
@@ -101,14 +96,14 @@ def test_reference_limits_over_bands():
         assert ds.beta.item() == pytest.approx(row["beta"], rel=1e-9)
 
 
-def test_reference_ranges():
+def test_reference_ranges(rows_of):
     for row in rows_of("friction for a peak"):
         ds = fm.design.at_most(system_of(row), row["band"], row["limit"], row["mass"], row["mu"])
         ends = np.ravel(np.column_stack((ds.interval_begin.values, ds.interval_end.values)))
         np.testing.assert_allclose(ends, row["changes_at"], rtol=1e-8)
 
 
-def test_reference_margins():
+def test_reference_margins(rows_of):
     for row in rows_of("margins"):
         ds = fm.design.margin(system_of(row), row["r"], row["beta"], row["mu"])
         for name in (

@@ -4,7 +4,7 @@ computed by independent programs, and against numbers printed in the notes on th
 
 import numpy as np
 import pytest
-from general_systems import Solved, chain, matrices, phasors, reference, vector
+from general_systems import Solved, chain, matrices, phasors, vector
 
 import frictionmap as fm
 from frictionmap._kernels.general.follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
@@ -41,8 +41,8 @@ def check_extremes(found, offset, row, tolerance):
         assert np.abs(lowest - row["x_min"]).max() <= tolerance * size
 
 
-def test_any_periodic_load_and_belts():
-    content = reference("loads.json")
+def test_any_periodic_load_and_belts(reference_table):
+    content = reference_table("loads.json")
     for row in content["rows"]:
         found, offset = solved_row(row, content["systems"])
         assert found.resolved
@@ -53,9 +53,9 @@ def test_any_periodic_load_and_belts():
         check_extremes(found, offset, row, 1e-10)
 
 
-def test_varying_normal_load():
-    systems = reference("loads.json")["systems"]
-    for row in reference("normal_load.json")["rows"]:
+def test_varying_normal_load(reference_table):
+    systems = reference_table("loads.json")["systems"]
+    for row in reference_table("normal_load.json")["rows"]:
         normal = {int(n): complex(*value) for n, value in row["normal_load"].items()}
         found, offset = solved_row(row, systems, normal=normal)
         assert found.resolved
@@ -64,8 +64,8 @@ def test_varying_normal_load():
         check_extremes(found, offset, row, 1e-10)
 
 
-def test_elastic_contacts():
-    content = reference("elastic.json")
+def test_elastic_contacts(reference_table):
+    content = reference_table("elastic.json")
     for row in content["rows"]:
         found, offset = solved_row(row, content["systems"], spring=[row["kt"]])
         assert found.resolved
@@ -81,8 +81,8 @@ def test_elastic_contacts():
         assert abs(share - row["elastic_share"]) < 1e-10
 
 
-def test_several_contacts():
-    for row in reference("contacts.json")["steady_states"]:
+def test_several_contacts(reference_table):
+    for row in reference_table("contacts.json")["steady_states"]:
         mass, stiffness, damping, w = (np.array(row[key]) for key in ("M", "K", "C1", "W"))
         load = np.array(row["load_re"]) + 1j * np.array(row["load_im"])
         beta = np.array(row["beta"])
@@ -190,8 +190,8 @@ def test_least_peak_of_an_elastic_damper(stiffness, beta, r, peak):
     assert float(ds.amplitude.max()) == pytest.approx(peak, rel=2e-5)
 
 
-def test_harmonics_and_distances():
-    content = reference("loads.json")
+def test_harmonics_and_distances(reference_table):
+    content = reference_table("loads.json")
     for row in content["rows"][::3]:
         system = content["systems"][row["system"]]
         if row["wall_velocity"] and system["contact"][0] != "wall":

@@ -1,10 +1,7 @@
 """Long periods and irregular motion at mu > 1, against another program that marched up to 50,000 cycles."""
 
-import json
-
 import numpy as np
 import pytest
-from conftest import REFERENCE
 
 import frictionmap as fm
 from frictionmap import regimes
@@ -131,11 +128,8 @@ def test_damped_cells_are_resolved_or_irregular(form):
 
 
 @pytest.fixture(scope="session")
-def reference():
-    path = REFERENCE / "irregular.json"
-    if not path.is_file():
-        pytest.skip("the reference values irregular.json are not at hand")
-    return json.loads(path.read_text())
+def reference(reference_table):
+    return reference_table("irregular.json")
 
 
 @FORMS

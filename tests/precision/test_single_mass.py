@@ -7,7 +7,6 @@ import math
 
 import numpy as np
 import pytest
-from general_systems import reference
 
 import frictionmap as fm
 from benchmarks.measures.own_entry import own_entry
@@ -43,8 +42,8 @@ def test_printed_steady_state():
     assert extremes(cell) == pytest.approx((-0.03732371066, 0.17594857068), abs=2e-11)
 
 
-def test_rows_of_independent_programs():
-    content = reference("loads.json")
+def test_rows_of_independent_programs(reference_table):
+    content = reference_table("loads.json")
     tried = 0
     for row in content["rows"]:
         if row["system"] != "sdof" or row["mu"] != 1.0 or row["wall_velocity"] or row["permanently_stuck"]:

@@ -1,7 +1,12 @@
 """The command of the benchmarks, the committed results, and how the manual quotes them."""
 
+import ast
 import json
 import math
+import re
+import sys
+import tomllib
+from importlib.metadata import PackageNotFoundError, packages_distributions, requires
 from itertools import pairwise
 
 import numpy as np
@@ -28,6 +33,60 @@ def test_what_is_no_number_is_saved_as_none(tmp_path):
         "b": {"c": [None, None, 2]},
         "d": "nan",
     }
+
+
+def named(requirement):
+    """Name of a distribution, in the form in which names are compared, and the extras that are asked for."""
+    name, extras = re.match(r"([\w.-]+)(?:\[([\w,-]+)\])?", requirement).groups()
+    return re.sub(r"[-_.]+", "-", name).lower(), set((extras or "").split(",")) - {""}
+
+
+def installed_with(extra):
+    """Names of the distributions that `pip install '.[extra]'` installs, by what is installed here."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    waiting = [*project["dependencies"], *project["optional-dependencies"][extra]]
+    found = set()
+    while waiting:
+        name, extras = named(waiting.pop())
+        if name == "frictionmap":
+            waiting += [one for more in extras for one in project["optional-dependencies"][more]]
+        elif name not in found:
+            found.add(name)
+            try:
+                waiting += [one for one in requires(name) or [] if "extra ==" not in one]
+            except PackageNotFoundError:
+                continue
+    return found
+
+
+#: Distributions that are imported by another name and may not be installed here.
+OTHER_NAMES = {"sksundae": "scikit-sundae"}
+
+
+def imported(path):
+    """Names of the packages that a module imports, also inside functions and by `import_module`."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            yield node.module
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("import_module"):
+            name = node.args[0]
+            yield from [name.value] if isinstance(name, ast.Constant) else []
+
+
+def test_the_extra_installs_what_benchmarks_use():
+    """Their imports, and the extras of the package itself: stores, and workers."""
+    there, distributions = installed_with("benchmarks"), packages_distributions()
+    own = {"benchmarks", "frictionmap", *sys.stdlib_module_names}
+    for path in sorted((ROOT / "benchmarks").rglob("*.py")):
+        text = path.read_text(encoding="utf-8")
+        used = {name.split(".")[0] for name in imported(path)} - own
+        wanted = [distributions.get(name, [OTHER_NAMES.get(name, name)]) for name in used]
+        wanted += [["zarr"]] * (".zarr" in text or "frictionmap.stores" in text)
+        wanted += [["distributed"]] * ('"--workers"' in text)
+        for names in wanted:
+            assert {named(name)[0] for name in names} & there, (path.name, names)
 
 
 def test_a_benchmark_is_imported_only_when_it_is_asked_for():

@@ -163,3 +163,18 @@ def test_type_checkers_accept_the_code_and_find_slips(checker, tmp_path):
         if one != other
     }
     assert changed <= set(found["slipped.py"])
+
+
+def test_tests_find_reference_data_through_their_fixture_only():
+    """What lies beside a clone is not in it: whatever else looked there would fail in the reader's clone."""
+    elsewhere = re.compile(r"FRICTIONMAP_" r"REFERENCE|\bROOT\.parent")
+    for path in sorted((ROOT / "tests").rglob("*.py")):
+        if path.name != "conftest.py":
+            assert not elsewhere.search(path.read_text(encoding="utf-8")), path.name
+
+
+def test_tests_of_reference_data_carry_the_marker(request):
+    """By it the others can be run alone."""
+    for item in request.session.items:
+        wants = "reference_path" in getattr(item, "fixturenames", ())
+        assert wants == (item.get_closest_marker("reference") is not None), item.nodeid

@@ -1,5 +1,6 @@
 """`ds.frictionmap`, and descriptions of objects in notebooks."""
 
+import json
 import subprocess
 import sys
 
@@ -10,6 +11,7 @@ import xarray as xr
 
 import frictionmap as fm
 from frictionmap import InputError
+from frictionmap.command_line.cli import main
 
 TWO = fm.System(mass_ratios=[1.0, 2.0], stiffness_ratios=[1.0, 1.0])
 
@@ -36,6 +38,41 @@ def test_cells_of_a_regime(mapped, name):
     assert (np.isfinite(found.stops_per_cycle.values) == there).all()
     assert (found.contact_amplitude.values[there] == mapped.contact_amplitude.values[there]).all()
     assert found.beta_lim.equals(mapped.beta_lim)
+
+
+@pytest.fixture(scope="module")
+def of_contacts():
+    """A map of two contacts, in which they do different things."""
+    contacts = [fm.Contact("fixed-wall", 1, ratio=0.5), fm.Contact("between-masses", (1, 2), name="joint")]
+    system = fm.System(
+        contacts=contacts, mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.05, load_mass=2
+    )
+    ds = fm.sweep(system, np.linspace(0.3, 1.5, 9), np.linspace(0.1, 1.5, 9), 1.0)
+    assert (ds.contact_regime != ds.regime).any(["mu", "r", "beta"]).all()
+    return ds
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_regimes_of_a_contact_that_was_chosen(of_contacts, number, tmp_path, capsys):
+    """Names, cells and counts are those of the contact, as in its picture."""
+    one, codes = of_contacts.sel(contact=number), {"permanent-sticking": 0, "stick-slip": 1, "continuous": 2}
+    path = tmp_path / "two.nc"
+    of_contacts.to_netcdf(path)
+    for name, code in codes.items():
+        there = one.contact_regime.values == code
+        assert ((one.frictionmap.labels == name).values == there).all()
+        kept = one.frictionmap.where_regime(name).contact_amplitude.values
+        np.testing.assert_array_equal(kept[there], one.contact_amplitude.values[there])
+        assert np.isnan(kept[~there]).all()
+        assert ((of_contacts.frictionmap.labels == name) == (of_contacts.regime == code)).all()
+    counts = {name.replace("-", " "): int((one.contact_regime == code).sum()) for name, code in codes.items()}
+    assert main(["info", str(path), "--at", f"contact={number}"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    found = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
+    assert f"81 cells ({found})" in lines
+    assert main(["info", str(path), "--json", "--at", f"contact={number}"]) == 0
+    cells = json.loads(capsys.readouterr().out)["cells"]
+    assert cells == {name.replace(" ", "_"): count for name, count in counts.items() if count}
 
 
 def test_pictures(mapped):

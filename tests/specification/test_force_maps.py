@@ -1,5 +1,7 @@
 """Friction against friction at one frequency: curves of partial sticking, nine colours, refusals."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -62,6 +64,20 @@ def test_nine_colours_and_curves(maps):
     assert "one contact sticks, the other moves" in labels
     colours = [patch.get_facecolor() for patch in legend.get_patches()]
     assert len(colours) == np.unique(classes).size <= len(PAIRS)
+
+
+def test_curves_of_one_contact_are_drawn_where_they_hold(maps):
+    """They are limits of mu = 1, of the contacts, not of the grid."""
+    assert "one contact sticks, the other moves" in _labels(fm.plot_forces(maps))
+    contacts = [replace(one, mu=2.0) for one in SYSTEM.contacts]
+    own = fm.sweep(
+        replace(SYSTEM, contacts=contacts), [0.9], [0.1, 0.5], 1.0, axes={"contacts[2].force": FORCES[:2]}
+    )
+    assert "one contact sticks, the other moves" not in _labels(fm.plot_forces(own))
+
+
+def _labels(axes):
+    return [text.get_text() for text in axes[0].figure.legends[0].get_texts()]
 
 
 def test_from_the_command_line(maps, tmp_path, monkeypatch, capsys):

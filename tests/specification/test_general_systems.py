@@ -174,6 +174,18 @@ def test_friction_of_one_contact_as_a_further_axis(tmp_path):
     )
 
 
+def test_every_map_has_a_status(tmp_path):
+    """Also where it was not asked for and every cell is resolved, in studies and in files."""
+    system = fm.System(contact_stiffness=2.0, damping_ratios=0.05)
+    for further in ({}, {"axes": {"damping_ratios": [0.05, 0.1]}}):
+        ds = fm.sweep(system, [0.7], [0.2], outputs=["regime"], **further)
+        assert not ds.status.any()
+    ds = fm.sweep(fm.System(damping_ratios=0.05), [0.7], [0.2], axes={"contact_stiffness": [1.0, 2.0]})
+    assert not ds.status.any()
+    ds = written(tmp_path, TWO_CONTACTS, "map", "--set", 'solver.outputs=["regime"]')
+    assert ds.status.dims == ("mu", "r", "beta")
+
+
 def test_threads_and_grids_change_no_bit():
     system = fm.System(
         contacts=[fm.Contact("fixed-wall", 1)], damping_ratios=0.02, load_harmonics={1: 1, 3: 0.3}

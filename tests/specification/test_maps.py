@@ -1,5 +1,6 @@
 """Regime maps: any threads, any part of a grid, any outputs; arguments, progress, memory."""
 
+import os
 import subprocess
 import sys
 
@@ -11,10 +12,34 @@ from outputs import OUTPUTS
 from structures import chain_matrices, pendants
 
 import frictionmap as fm
-from frictionmap import regimes
+from frictionmap import jobs, regimes
 from frictionmap.files.config import load_config
 from frictionmap.steady.kernel_data import structure_arrays
 from frictionmap.theory.boundary_curves import find_curves
+
+
+@pytest.mark.parametrize(("given", "used"), [(None, 3), ("", 3), ("1", 1), ("2", 2), ("64", 3)])
+@pytest.mark.parametrize("system", [fm.System(), fm.System(contact_stiffness=2.0)])
+def test_an_environment_variable_limits_threads(monkeypatch, system, given, used):
+    """As install.md says, with three processors; a number that is given as an argument counts for itself."""
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1, 2}, raising=False)
+    monkeypatch.setattr(jobs, "_IDLE", {})
+    if given is None:
+        monkeypatch.delenv("NUMBA_NUM_THREADS", raising=False)
+    else:
+        monkeypatch.setenv("NUMBA_NUM_THREADS", given)
+    r, beta = np.linspace(0.3, 1.5, 40), np.linspace(0.1, 0.9, 40)
+    fm.sweep(system, r, beta)
+    assert {*jobs._IDLE} == {used}
+    fm.sweep(system, r, beta, threads=4)
+    assert {*jobs._IDLE} == {used, 4}
+
+
+@pytest.mark.parametrize("given", ["0", "-2", "two", "1.5"])
+def test_an_invalid_number_of_threads_in_the_environment_is_refused(monkeypatch, given):
+    monkeypatch.setenv("NUMBA_NUM_THREADS", given)
+    with pytest.raises(fm.InputError, match=f"^NUMBA_NUM_THREADS must be a whole number >= 1; got '{given}'"):
+        fm.sweep(fm.System(), [1.0], [0.5])
 
 
 @pytest.mark.parametrize("start", ["rest", "moving"])

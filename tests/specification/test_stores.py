@@ -24,6 +24,7 @@ from frictionmap import InputError
 from frictionmap.command_line.cli import main
 from frictionmap.files.config import load_config
 from frictionmap.files.places import claimed_folder
+from frictionmap.files.reading import opened as read_opened
 from frictionmap.model.variations import checked_variations
 from frictionmap.stores.run import fill_store, in_this_process
 from frictionmap.stores.store import opened
@@ -278,15 +279,12 @@ def test_a_link_to_a_store(tmp_path):
     assert sorted(os.listdir(path.parent)) == ["map.zarr"]
 
 
-@pytest.mark.parametrize("gone", ["regime/zarr.json", "block_done", "block_done/c/0/1"])
+@pytest.mark.parametrize("gone", ["regime/zarr.json", "block_done"])
 def test_a_damaged_store_is_refused(tmp_path, gone):
     asked, path = study(ONE, 300), tmp_path / "map.zarr"
     fill_store(path, asked, "map", in_this_process(1))
-    if gone.endswith("1"):
-        (path / gone).write_bytes(b"")  # an empty mark
-    else:
-        (path / gone).rename(tmp_path / "gone")
-    with pytest.raises(InputError, match=f"array '{gone.split('/')[0]}' is damaged .*; use --overwrite"):
+    (path / gone).rename(tmp_path / "gone")
+    with pytest.raises(InputError, match=rf"{gone.split('/')[0]}/zarr\.json is damaged; use --overwrite"):
         fill_store(path, asked, "map", in_this_process(1))
     fill_store(path, asked, "map", in_this_process(1), overwrite=True)
     assert opened(path).marks().all()
@@ -580,7 +578,172 @@ def test_a_worker_of_another_version_is_named():
     from frictionmap.stores.workers import NO_DASHBOARD, task
 
     with distributed.Client(processes=False, n_workers=1, **NO_DASHBOARD) as client:
-        sent = client.submit(task("0.0.1"), "map.zarr", "digest", (0, 0))
+        sent = client.submit(task("0.0.1", "state"), "map.zarr", "digest", (0, 0))
         words = rf"\[dask\] 0\.0\.1 \(frictionmap has version {re.escape(fm.__version__)} there\)"
         with pytest.raises(OSError, match=words):
             sent.result()
+
+
+# Checksums, and states of the program
+
+
+def flipped(file, place, bit):
+    """Flip one bit of a file."""
+    content = bytearray(file.read_bytes())
+    content[place] ^= 1 << bit
+    file.write_bytes(bytes(content))
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    """A finished store of a structure with matrices, and the study that it is of."""
+    system = fm.System(matrices={"M": np.diag([1.0, 2.0]), "K": np.array([[2.0, -1.0], [-1.0, 1.5]])})
+    asked, path = study(system, 300), tmp_path_factory.mktemp("small") / "m.zarr"
+    fill_store(path, asked, "map", in_this_process(1))
+    return asked, path
+
+
+def contents(path):
+    """All values of a store that its readers use, loaded."""
+    with read_opened(path) as ds:
+        return ds.load()
+
+
+def refusal(path):
+    """The message where a store cannot be read, or its values."""
+    try:
+        return contents(path)
+    except InputError as error:
+        return str(error)
+
+
+def test_no_flipped_bit_changes_a_value(small, tmp_path):
+    """In any file of a store: what is read stays the same, or is refused with the name of the file."""
+    whole, path = small[1], tmp_path / "m.zarr"
+    before, chance = contents(whole), np.random.default_rng(5)
+    files = [file for file in sorted(whole.rglob("*")) if file.is_file() and "matrices" not in file.parts]
+    refused = 0
+    for file in chance.choice(files, 60, replace=False):
+        shutil.copytree(whole, path)
+        damaged = path / file.relative_to(whole)
+        flipped(damaged, chance.integers(damaged.stat().st_size), chance.integers(8))
+        found = refusal(path)
+        if isinstance(found, str):
+            assert str(damaged) in found, found
+            refused += 1
+        else:
+            xr.testing.assert_identical(found, before)
+        shutil.rmtree(path)
+    assert refused >= 50
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["regime/c/0/0/0", "amplitude/c/0/1/0/0", "beta_lim/c/0/0", "block_done/c/0/1", "r/c/0", "beta/c/0"],
+)
+def test_a_damaged_chunk_is_named_and_written_again(small, tmp_path, name, caplog):
+    asked, whole = small
+    path = tmp_path / "m.zarr"
+    shutil.copytree(whole, path)
+    flipped(path / name, 5, 3)
+    with pytest.raises(InputError, match=f"cannot read .*{name} is damaged; repeat the command"):
+        contents(path)
+    with caplog.at_level("WARNING", "frictionmap"):
+        fill_store(path, asked, "map", in_this_process(1))
+    assert f"{path / name} is damaged" in caplog.text
+    same_files(path, whole)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("zarr.json", '"system":', '"sistem":'),
+        ("zarr.json", "Conventions", "Conventionz"),
+        ("regime/zarr.json", '"fill_value": -1', '"fill_value": -3'),
+        ("r/zarr.json", "frequency", "grequency"),
+        ("matrices/M/zarr.json", "float64", "int64"),
+    ],
+)
+def test_a_damaged_description_is_refused(small, tmp_path, name, old, new):
+    asked, whole = small
+    path = tmp_path / "m.zarr"
+    shutil.copytree(whole, path)
+    text = (path / name).read_text()
+    assert old in text
+    (path / name).write_text(text.replace(old, new, 1))
+    with pytest.raises(InputError, match=f"cannot read .*{name} is damaged; compute the store again"):
+        contents(path)
+    with pytest.raises(InputError, match=f"cannot resume .*{name} is damaged; use --overwrite"):
+        fill_store(path, asked, "map", in_this_process(1))
+
+
+def test_a_damaged_matrix_is_refused(small, tmp_path):
+    asked, whole = small
+    path = tmp_path / "m.zarr"
+    shutil.copytree(whole, path)
+    flipped(path / "matrices" / "K" / "c" / "0" / "0", 20, 0)
+    with pytest.raises(InputError, match=r"cannot resume .* array 'matrices/K' is damaged"):
+        fill_store(path, asked, "map", in_this_process(1))
+
+
+def test_attributes_may_be_added(small, tmp_path):
+    asked, whole = small
+    path = tmp_path / "m.zarr"
+    shutil.copytree(whole, path)
+    zarr.open_group(path, mode="r+").attrs["comment"] = "rig B"
+    assert contents(path).attrs["comment"] == "rig B"
+    fill_store(path, asked, "map", in_this_process(1))
+
+
+def test_a_store_of_another_state_of_the_program_is_refused(tmp_path, monkeypatch):
+    """Version numbers stay for hundreds of changes; blocks of two states must not be mixed."""
+    asked, path = study(ONE, 300), tmp_path / "map.zarr"
+    fill_store(path, asked, "map", lambda store, batches: islice(in_this_process(1)(store, batches), 2))
+    with monkeypatch.context() as patched:
+        patched.setattr("frictionmap.stores.store.state", lambda: "0123456789abcdef")
+        with pytest.raises(InputError, match=r"begun by another state .*0123456789abcdef.*; use --over"):
+            fill_store(path, asked, "map", in_this_process(1))
+    fill_store(path, asked, "map", in_this_process(1))
+    assert opened(path).marks().all()
+
+
+def test_the_state_of_the_program_is_that_of_its_sources(tmp_path):
+    """Of all that cells come from: another line in a kernel, a boundary or a model is another state."""
+    root = Path(fm.__file__).parent
+    shutil.copytree(root, tmp_path / "frictionmap", ignore=shutil.ignore_patterns("__pycache__"))
+
+    def state():
+        code = "from frictionmap.version import state; print(state())"
+        done = subprocess.run(
+            [sys.executable, "-c", code], env=os.environ | {"PYTHONPATH": str(tmp_path)}, cwd=tmp_path,
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        return done.stdout.strip()
+
+    found = {state()}
+    for name in ("_kernels/one_mass/newton.py", "theory/boundaries.py", "model/modes.py", "general/held.py"):
+        with open(tmp_path / "frictionmap" / name, "a") as file:
+            file.write("# another\n")
+        found.add(state())
+    assert len(found) == 5
+    with open(tmp_path / "frictionmap" / "pictures" / "words.py", "a") as file:
+        file.write("# another\n")
+    assert state() in found
+
+
+def test_all_that_computes_blocks_is_part_of_the_state(tmp_path):
+    """No module that a block is computed with lies in a room that the state leaves out."""
+    code = (
+        "import sys, numpy as np, frictionmap as fm\n"
+        "from frictionmap.stores.study import study_of\n"
+        "from frictionmap import version\n"
+        "for system in (fm.System(), fm.System(contact_stiffness=1.0)):\n"
+        "    grid = {'mu': np.ones(1), 'r': np.ones(1), 'beta': np.ones(1)}\n"
+        "    _ = study_of(system, None, grid, fm.Solver()).sample\n"
+        "rooms = {name.split('.')[1] for name in sys.modules if name.startswith('frictionmap.')}\n"
+        "print(sorted(rooms & version._NO_MATTER))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment(), capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "[]", done.stdout

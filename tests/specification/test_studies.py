@@ -10,6 +10,7 @@ import xarray as xr
 import frictionmap as fm
 from frictionmap import InputError
 from frictionmap.command_line.cli import main
+from frictionmap.files.export import csv_of
 from frictionmap.files.reading import opened, read
 from frictionmap.files.slices import parse_choices
 from frictionmap.files.storage import write
@@ -314,6 +315,74 @@ def test_quantiles_of_what_is_missing_or_infinite(samples):
     assert found["contact_amplitude_quantile"].values.ravel().tolist() == [1.0, 2.0, 3.0, np.inf, np.inf]
     some["contact_amplitude"].values[:] = np.nan
     assert np.isnan(fm.shares(some, "sample")["contact_amplitude_quantile"].values).all()
+
+
+CONTACTS = """
+title = "Two contacts"
+[system]
+mass_ratios = [1.0, 1.0]
+stiffness_ratios = [1.0, 1.0]
+damping_ratios = 0.05
+load_mass = 2
+[[system.contacts]]
+kind = "fixed-wall"
+masses = [1]
+ratio = 0.5
+[[system.contacts]]
+name = "joint"
+kind = "between-masses"
+masses = [1, 2]
+[grid]
+r = [0.4, 0.9, 1.4]
+beta = [0.1, 0.5, 0.9, 1.3]
+[axes]
+"stiffness_ratios[2]" = [0.8, 1.0, 1.3]
+"""
+
+
+def test_shares_of_contacts(tmp_path):
+    """Those of all contacts together, or of the one that is chosen: its regimes, beta_stick and amplitude."""
+    (tmp_path / "c.toml").write_text(CONTACTS)
+    path, over = str(tmp_path / "c.nc"), "stiffness_ratios_2"
+    assert main(["map", str(tmp_path / "c.toml"), "-o", path, "--quiet"]) == 0
+    whole = xr.load_dataset(path)
+    assert (whole.contact_regime != whole.regime).any([over, "mu", "r", "beta"]).all()
+    for number in (None, 1, 2):
+        at = ["--at", f"contact={number}"] if number else []
+        out = str(tmp_path / f"shares-{number}.nc")
+        assert main(["export", path, "--over", over, *at, "-o", out, "--quiet"]) == 0
+        found = read(tmp_path / out)
+        one = whole.sel(contact=number) if number else whole
+        regime = one.contact_regime if number else one.regime
+        for name, code in {"permanent_sticking": 0, "stick_slip": 1, "continuous": 2}.items():
+            np.testing.assert_array_equal(
+                found.regime_share.sel(outcome=name), (regime == code).mean(over), name
+            )
+        stick = one.beta_stick_contact if number else one.beta_stick
+        np.testing.assert_allclose(
+            found.beta_stick_quantile.sel(quantile=0.5), stick.median(over), rtol=1e-14
+        )
+        assert ("contact_amplitude_quantile" in found) == (number is not None)
+        picture = fm.plot_shares(found)[0].figure.get_suptitle()
+        assert picture == {None: "Two contacts", 1: "Two contacts, contact 1 (fixed-wall 1)"}.get(
+            number, "Two contacts, contact 2 (joint)"
+        )
+        drawn = str(tmp_path / f"shares-{number}.png")
+        assert main(["plot", path, "--over", over, *at, "-o", drawn, "--quiet"]) == 0
+
+
+def test_shares_of_a_belt(tmp_path):
+    """Sliding one way is a regime of its own: the shares add up to 1, and tables have its name."""
+    system = fm.System(damping_ratios=0.02, wall_velocity=0.6)
+    ds = fm.sweep(system, [0.5, 3.0], [0.2, 0.6], axes={"damping_ratios": [0.02, 0.3]})
+    assert (ds.regime == fm.regimes.ONE_WAY_SLIDING).any()
+    share = fm.shares(ds, "damping_ratios").regime_share
+    np.testing.assert_array_equal(share.sum("outcome"), 1.0)
+    expected = (ds.regime == fm.regimes.ONE_WAY_SLIDING).mean("damping_ratios")
+    np.testing.assert_array_equal(share.sel(outcome="one_way_sliding"), expected)
+    titles = [ax.get_title() for ax in fm.plot_shares(fm.shares(ds, "damping_ratios"))]
+    assert any("one way sliding" in title for title in titles)
+    assert "one_way_sliding" in csv_of(ds.isel(damping_ratios=0))
 
 
 @pytest.mark.parametrize(

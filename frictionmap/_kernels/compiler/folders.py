@@ -6,7 +6,6 @@ that cannot be written to either, in a private folder for temporary files.
 
 import contextlib
 import functools
-import hashlib
 import os
 import stat
 import sys
@@ -17,7 +16,7 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from ...version import __version__
+from ...version import digest_of
 from .notices import warn_once
 
 #: Endings of the files of kernels (those of plain numba have two), beginning of files being written.
@@ -40,10 +39,7 @@ _NO_MATTER = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS", "NUMBA_DISABLE_JIT")
 @functools.cache
 def state() -> str:
     """Return a digest of all that decides what kernels compile to, except the processor."""
-    digest = hashlib.sha256(__version__.encode())
-    with contextlib.suppress(OSError):  # without source files, as in an archive, the version alone
-        for path in (*sorted(_SOURCES.rglob("*.py")), _SOURCES.parent / "regimes.py"):
-            digest.update(path.read_bytes())
+    digest = digest_of((*sorted(_SOURCES.rglob("*.py")), _SOURCES.parent / "regimes.py"))
     settings = sorted(
         (name, value)
         for name, value in os.environ.items()

@@ -13,6 +13,7 @@ from ...regimes import IRREGULAR
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from ..compiler.vectors import LANES
+from ..event_codes import GRAZING
 from ..logs import mean_and_error
 from ..structure.events import NO_RELEASE, UNDER_WAY, after_slide, slide_on
 from ..structure.newton import Workspace, free_motion, make_workspace, through_event
@@ -85,6 +86,8 @@ def _follow_growth(st, beta, mu_beta, state, phase, moves, growth, tangent, work
         )
         if event == NO_RELEASE:
             return True
+        if event == GRAZING:  # so does a start from rest that the load pushes upwards: nothing jumps
+            continue
         if not (stops_at(event) or turns_at(event)):
             return False
         through_event(st, beta, mu_beta, event, load, wait, slope, tangent, work.stopped, LANES)

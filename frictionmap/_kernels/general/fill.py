@@ -47,7 +47,7 @@ class Grid(NamedTuple):
     kinetic: np.ndarray  # (N, 2)
     static: np.ndarray  # (n_mu, N, 2)
     stuck_from: np.ndarray  # (n_mu, n_r) index of the first cell that is proved to stick permanently
-    starts: np.ndarray  # (n_r, 2, m) modes and their velocities at tau = 0
+    starts: np.ndarray  # (n_r, 3, m) initial states, see `from_rest`
     places: bool  # whether displacements are wanted that depend on the places of contacts at rest
     cycles: float
     tolerance: float

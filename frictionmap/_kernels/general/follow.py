@@ -36,10 +36,6 @@ COUNT_ROWS = 12
 
 FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
 
-#: Parts of the time that are followed: half a period from the section or from half a period after it (0, 1),
-#: or what is before the section.
-BEFORE = -1
-
 
 @inner_kernel
 def _watch(series, source, sign, shift, scratch):
@@ -353,13 +349,23 @@ def _cross(problem, row, friction, begin, interval, length, work, law, counts, r
 
 
 @kernel
+def _begin(problem, row, friction, work):
+    """Prepare the state and pattern in `work`; False if the contacts do not determine their forces."""
+    work.clock[0] = math.nan
+    for j in range(work.idle.size):
+        work.idle[j] = False
+    rest_springs(problem, friction, work, 0)
+    return factor_held(problem, row, work)
+
+
+@kernel
 def follow(problem, row, friction, part, work, law, counts, record, derive):
-    """Follow the motion for half a period of the load, or from tau = 0 to the section.
+    """Follow the motion for half a period of the load.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
-    part : 0 or 1: the half period that begins at the section, or the one after it; BEFORE: from tau = 0
+    part : 0 or 1: the half period that begins at the section, or the one after it
     work : Work; state and pattern are replaced by those at the end, and `tangent` is multiplied if `derive`
     law : (LAW_ROWS, N) scratch
     counts : (COUNT_ROWS, N) counters, increased
@@ -371,31 +377,48 @@ def follow(problem, row, friction, part, work, law, counts, record, derive):
     int : FOLLOWED, CHATTERS or UNDETERMINED
     """
     h = row.numbers[0]
-    work.clock[0] = math.nan
-    for j in range(work.idle.size):
-        work.idle[j] = False
-    rest_springs(problem, friction, work, 0)
-    if not factor_held(problem, row, work):
+    if not _begin(problem, row, friction, work):
         return UNDETERMINED
     intervals = row.intervals[0]
-    if part != BEFORE:  # a state that Newton's method or other states led to, with their errors
-        set_channels(problem, row, SECTION + part * intervals * h, part * intervals, work)
-        stop_exactly(problem, row, work)
+    # a state that Newton's method or other states led to, with their errors
+    set_channels(problem, row, SECTION + part * intervals * h, part * intervals, work)
+    stop_exactly(problem, row, work)
     if derive:
         hold_tangent(problem, row, work)
-    count = int(math.ceil(SECTION / h)) if part == BEFORE else intervals
-    glides = part != BEFORE and record.active[0] == 0 and can_glide(problem, row)
-    for k in range(count):
-        begin, interval, length = k * h, -1, min(1.0, SECTION / h - k)
-        if part != BEFORE:
-            interval = part * intervals + k
-            begin, length = SECTION + interval * h, 1.0
+    glides = record.active[0] == 0 and can_glide(problem, row)
+    for k in range(intervals):
+        interval = part * intervals + k
         if glides and glide(problem, row, friction, interval, work):
             _count_time(work, counts, h)
             if derive:
                 advance_tangent(problem, row, work, 1.0)
             continue
-        code = _cross(problem, row, friction, begin, interval, length, work, law, counts, record, derive)
+        begin = SECTION + interval * h
+        code = _cross(problem, row, friction, begin, interval, 1.0, work, law, counts, record, derive)
+        if code != FOLLOWED:
+            return code
+    return FOLLOWED
+
+
+@kernel
+def follow_to_section(problem, row, friction, begin, work, law, counts, record):
+    """Follow the motion from a phase 0 <= `begin` < 2 pi to the next section.
+
+    Parameters
+    ----------
+    problem, row, friction, work, law, counts, record : see `follow`
+
+    Returns
+    -------
+    int : FOLLOWED, CHATTERS or UNDETERMINED
+    """
+    h = row.numbers[0]
+    if not _begin(problem, row, friction, work):
+        return UNDETERMINED
+    parts = (SECTION if begin <= SECTION else SECTION + 2.0 * math.pi) / h - begin / h
+    for k in range(int(math.ceil(parts))):
+        length = min(1.0, parts - k)
+        code = _cross(problem, row, friction, begin + k * h, -1, length, work, law, counts, record, False)
         if code != FOLLOWED:
             return code
     return FOLLOWED

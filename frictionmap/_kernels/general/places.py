@@ -37,7 +37,7 @@ from .series import factor_held, solve_held
 _SAFETY = 4.0
 
 #: A contact whose force hardly exceeds its friction slides ever more slowly, in one direction, to where it no
-#: longer does.  One that slid so in this many periods, after which more than this share of the excess is left,
+#: longer does.  One that slid so in this many periods, and has more than this share of the excess left,
 #: ends there: all that changes faster, and could move it beyond, is over by then.
 _CREEPS, _LEFT = 16, 0.5
 

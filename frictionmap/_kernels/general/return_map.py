@@ -7,7 +7,6 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from .follow import (
-    BEFORE,
     COUNT_ROWS,
     FIRST_SENSE,
     FOLLOWED,
@@ -16,6 +15,7 @@ from .follow import (
     MOVED,
     REVERSALS,
     follow,
+    follow_to_section,
 )
 from .pattern import begin
 from .problem import padded, state_size
@@ -138,42 +138,48 @@ def go_round(problem, row, friction, halves, work, memory, record, derive):
 
 
 @kernel
-def _put_start(problem, row, state, work):
-    """Set the state at tau = 0; elastic contacts begin without force."""
+def _start(problem, row, friction, state, work, memory):
+    """Set the initial state, and decide its pattern; see `from_rest`.
+
+    Returns
+    -------
+    (determined, tau) : whether the contacts determine their forces; phase
+    """
     for m in range(problem.push.shape[0]):
         work.state[0, m] = state[0, m]
         work.state[1, m] = row.numbers[0] * state[1, m]
     for j in range(problem.spring.size):
         work.state[2, j] = 0.0
+    tau = state[2, 0] if state.shape[0] == 3 else 0.0
+    return begin(problem, row, friction, tau, work, memory.law), tau
 
 
 @kernel
 def begins_held(problem, row, friction, state, work, memory):
-    """Whether no contact moves at tau = 0."""
-    _put_start(problem, row, state, work)
-    if not begin(problem, row, friction, 0.0, work, memory.law):
-        return False
+    """Whether no contact moves at the start."""
+    determined, _ = _start(problem, row, friction, state, work, memory)
     moving = 0
     for j in range(work.sense.size):
         moving += abs(work.sense[j])
-    return moving == 0
+    return determined and moving == 0
 
 
 @kernel
 def from_rest(problem, row, friction, state, work, memory, record, what):
-    """Follow a motion from tau = 0 to the section.
+    """Follow a motion from its start to the section.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
-    state : (2, m) modes and their velocities q' at tau = 0; elastic contacts begin without force
+    state : (2, m) modes and their velocities q' at tau = 0, or (3, m), at the phase state[2, 0]; elastic
+        contacts begin without force
     work, memory, record : Work, Return, Record
     what : NOTHING or FORCES, what is recorded
     """
-    _put_start(problem, row, state, work)
     record.active[0] = what
-    if begin(problem, row, friction, 0.0, work, memory.law):
-        follow(problem, row, friction, BEFORE, work, memory.law, memory.counts, record, False)
+    determined, tau = _start(problem, row, friction, state, work, memory)
+    if determined:
+        follow_to_section(problem, row, friction, tau, work, memory.law, memory.counts, record)
     record.active[0] = NOTHING
     take_state(work, memory.start, memory.senses, 1.0)
 

@@ -515,7 +515,7 @@ def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, mos
     ----------
     problem, i : Problem, index of r
     friction : Friction
-    state : (2, m) modes and their velocities q' at tau = 0
+    state : see `from_rest`
     cycles, tolerance : see `find`
     masses : (n, m) displacement of the masses per mode
     most : number of steps that are kept

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ... import regimes
+from ...datasets.labels import regime_of_choice
 from ...files.stored import stored_system
 from ...model.system import System
 from ..grids import Grid
@@ -47,11 +48,8 @@ class Family(NamedTuple):
 
 def _regime_of(cells: xr.Dataset, line: str, otherwise: np.ndarray) -> np.ndarray:
     """Regime of every point, (lines, r): of the contact that was chosen, or of all."""
-    names = ["regime"] if "contact" in cells.dims else ["contact_regime", "regime"]
-    for name in names:
-        if name in cells:
-            return cells[name].transpose(line, "r").values
-    return otherwise
+    name = regime_of_choice(cells)
+    return cells[name].transpose(line, "r").values if name in cells else otherwise
 
 
 def _one_of(symbol: str, values: np.ndarray) -> str:

@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ...files.stored import has_equal_friction
 from ..drawing import with_options
 from ..features import features_of, mark_features
 from ..grids import HIGH, Grid, limited
@@ -162,9 +163,8 @@ def _elastic_handles() -> list[Handle]:
     return [patch(word, CLASSES[index].colour) for index, word in ((UNCOUNTED, "slips"), (STUCK, "no slip"))]
 
 
-def _area_handles(mu: np.ndarray) -> list[Handle]:
-    """Legend entries of the areas: exact for mu = 1, otherwise possible regimes."""
-    certain = bool((mu == 1.0).all())
+def _area_handles(certain: bool) -> list[Handle]:
+    """Legend entries of the areas: exact where static is kinetic friction, otherwise possible regimes."""
     words = (
         (CONTINUOUS, "continuous", "continuous motion possible"),
         (UNCOUNTED, "stick-slip", "stick-slip"),
@@ -173,12 +173,12 @@ def _area_handles(mu: np.ndarray) -> list[Handle]:
     return [patch(sure if certain else may, CLASSES[index].colour) for index, sure, may in words]
 
 
-def _reading(mu: np.ndarray) -> str:
-    """Remark on how to read the regions."""
-    if (mu == 1.0).all():
+def _reading(exact: list[bool]) -> str:
+    """Remark on how to read the regions, which are exact in some panels."""
+    if all(exact):
         return ""
-    exact = "for μ = 1 the regions are exact; " if (mu == 1.0).any() else ""
-    return f"{exact}for μ > 1 stick-slip can also occur outside its region"
+    some = "for μ = 1 the regions are exact; " if any(exact) else ""
+    return f"{some}for μ > 1 stick-slip can also occur outside its region"
 
 
 @overload
@@ -226,6 +226,7 @@ def plot_boundaries(
     """
     ds = to_draw(ds, "plot_boundaries", "boundaries", "map")
     elastic = "beta_noslip" in ds
+    exact = [has_equal_friction(ds, float(mu)) for mu in np.atleast_1d(ds["mu"].values)]
     if not elastic:
         check_holds(ds, ("beta_lim", "beta_stick"), "its boundaries")
     r, panels = limited("r", ds["r"].values, current().xlim), current().chosen(panels_of(ds))
@@ -235,7 +236,7 @@ def plot_boundaries(
         draw, top, handles = _draw_elastic, _top_of_elastic(ds["beta_noslip"].values), _elastic_handles()
     else:
         draw, top = _draw, top_of(ds["beta_lim"].values, ds["beta_stick"].values)
-        handles = _area_handles(ds["mu"].values)
+        handles = _area_handles(all(exact))
     top = limits[1] if (limits := current().ylim) else top
     for panel_ax, panel in zip(axes, panels, strict=True):
         handles += [*draw(panel_ax, panel, r, top), *mark_point(panel_ax)]
@@ -243,7 +244,7 @@ def plot_boundaries(
     if ax is None:
         figure = axes[0].figure
         assert isinstance(figure, Figure)
-        legend_below(figure, handles, "; ".join(filter(None, (caption(ds), _reading(ds["mu"].values)))))
+        legend_below(figure, handles, "; ".join(filter(None, (caption(ds), _reading(exact)))))
         return axes
     legend_under(axes[-1], handles)
     return ax if isinstance(ax, Axes) else axes

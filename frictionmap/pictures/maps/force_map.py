@@ -16,6 +16,7 @@ from ...files.config import config_of
 from ...files.slices import further_axes
 from ...general.boundaries import friction_lines
 from ...general.partial import has_limits, holding_force
+from ...general.problem import general_of
 from ...model.system import System
 from ..drawing import with_options
 from ..grids import Grid
@@ -167,7 +168,9 @@ def _curves(ax: Axes, ds: xr.Dataset, over: str, beta: Grid, force: Grid) -> lis
             values = ds[name].squeeze().values
             handles += ax.plot(values, force.values, path_effects=halo(), **style)
     system = _system(ds)
-    if system is None or float(ds["mu"][0]) != 1.0 or not has_limits(system):
+    if system is None or not (
+        general_of(system).has_equal_friction(float(ds["mu"][0])) and has_limits(system)
+    ):
         return handles
     r, number = float(ds["r"][0]), int(over.split("_")[1]) - 1
     part = over.removeprefix(f"contacts_{number + 1}_")

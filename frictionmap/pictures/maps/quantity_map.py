@@ -12,7 +12,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from ... import checks
-from ...datasets.labels import LABELS
+from ...datasets.labels import LABELS, regime_of_choice
 from ...errors import InputError
 from ..classes import Counted, classes, counted
 from ..drawing import with_options
@@ -55,7 +55,8 @@ class QuantityPanel(NamedTuple):
     cells: xr.Dataset
     values: np.ndarray  # (r, beta)
     title: str  # mass or contact; empty if there is one value per cell
-    found: np.ndarray  # classes, (r, beta)
+    found: np.ndarray  # classes, (r, beta): of that contact, else of all together
+    by: Counted  # what they are named by
 
 
 class QuantityImage(CellImage):
@@ -109,26 +110,26 @@ def quantities_of(ds: xr.Dataset) -> list[str]:
     ]
 
 
-def _panels(ds: xr.Dataset, name: str, by: Counted) -> list[QuantityPanel]:
+def _panels(ds: xr.Dataset, name: str) -> list[QuantityPanel]:
     """A panel for each mu, mass and contact."""
     found = []
     for panel in panels_of(ds):
-        values = panel[name]
-        of_cells = _classes(panel, by)
         (dim, numbers) = next(
-            ((d, values[d].values.tolist()) for d in ("dof", "contact") if d in values.dims), ("", [0])
+            ((d, ds[d].values.tolist()) for d in ("dof", "contact") if d in ds[name].dims), ("", [0])
         )
         for number in numbers:
-            one = values.sel({dim: number}) if dim else values
+            cells = panel.sel(contact=number) if dim == "contact" else panel
+            by = counted(ds.sel(contact=number) if dim == "contact" else ds)
+            values = cells[name].sel(dof=number) if dim == "dof" else cells[name]
             title = {"dof": f"mass {number}", "contact": f"contact {number}"}.get(dim, "")
-            numbers_of_cells = one.transpose("r", "beta").values.astype(float)
-            found.append(QuantityPanel(panel, numbers_of_cells, title, of_cells))
+            numbers_of_cells = values.transpose("r", "beta").values.astype(float)
+            found.append(QuantityPanel(cells, numbers_of_cells, title, _classes(cells, by), by))
     return found
 
 
 def _classes(panel: xr.Dataset, by: Counted) -> np.ndarray:
     """Class of every cell, (r, beta); without a regime those that have no number are not distinguished."""
-    if "regime" in panel or by.variable in panel:
+    if regime_of_choice(panel) in panel or by.variable in panel:
         return classes(panel, by)
     return np.full((panel.sizes["r"], panel.sizes["beta"]), NO_STOPS, dtype=np.uint8)
 
@@ -228,16 +229,15 @@ def plot_quantity(
         hint = checks.nearest(name, valid) if isinstance(name, str) else ""
         there = ", ".join(valid) or "none"
         raise InputError(f"unknown quantity {checks.one_line(name)} of a map{hint}; valid: {there}")
-    by = counted(ds)
     ds, grids = in_view(ds)
-    panels = current().chosen(_panels(ds, name, by))
+    panels = current().chosen(_panels(ds, name))
     title = title_of_map(ds)
     axes = _new_axes(len(panels), title) if ax is None else given_axes(ax, len(panels), "one for each panel")
     scale, ends = _scale(name, panels, log)
     handles: list[Handle] = []
     for panel_ax, panel in zip(axes, panels, strict=True):
         handles += [*_draw(panel_ax, panel, grids, scale), *mark_point(panel_ax)]
-    handles = [*_class_handles(panels, by), *distinct(handles)]
+    handles = [*_class_handles(panels), *distinct(handles)]
     figure = axes[0].figure
     assert isinstance(figure, Figure)
     label = balanced(str(ds[name].attrs.get("long_name", name)), int(_LETTERS * figure.get_figheight()))
@@ -268,9 +268,12 @@ def _draw(ax: Axes, panel: QuantityPanel, grids: tuple[Grid, Grid], scale: Scala
     return handles
 
 
-def _class_handles(panels: Sequence[QuantityPanel], by: Counted) -> list[Handle]:
+def _class_handles(panels: Sequence[QuantityPanel]) -> list[Handle]:
     """Legend entries of the classes of cells without a number."""
     there = {
-        int(k) for panel in panels for k in np.unique(panel.found[_without_number(panel.values, panel.found)])
+        (int(k), panel.by.labels[k])
+        for panel in panels
+        for k in np.unique(panel.found[_without_number(panel.values, panel.found)])
+        if k < NOT_YET
     }
-    return [patch(by.labels[k], CLASSES[k].colour) for k in sorted(there) if k < NOT_YET]
+    return [patch(label, CLASSES[k].colour) for k, label in sorted(there)]

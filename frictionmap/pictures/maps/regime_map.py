@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from ...datasets.labels import regime_of_choice
 from ...errors import InputError
 from ..classes import Counted, classes, count, counted, legend_label, stops_range
 from ..drawing import with_options
@@ -302,7 +303,7 @@ def plot_regimes(
     """
     ds = to_draw(ds, "plot_regimes", "map")
     by = counted(ds)
-    if "regime" not in ds and by.variable not in ds:
+    if regime_of_choice(ds) not in ds and by.variable not in ds:
         raise InputError("a map must hold regime or stops_per_cycle to be drawn; got neither")
     ds, grids = in_view(ds)
     panels = current().chosen(panels_of(ds))

@@ -15,13 +15,13 @@ from ..panels import Handle, distinct, grid_of_panels, halo, legend_below, name_
 from ..second_axes import frequency_on_top, on_the_right
 from ..shapes import check_holds, to_draw
 from ..sizes import points
-from ..words import system_words
+from ..words import system_words, title_of_map
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
 
 #: Regimes with a panel if any sample is in them, from left to right.
-_OUTCOMES = ("continuous", "stick_slip", "permanent_sticking", "unresolved")
+_OUTCOMES = ("continuous", "stick_slip", "permanent_sticking", "one_way_sliding", "unresolved")
 
 #: Colour map with increasing darkness, also in grey, common to all regimes.
 _COLOURS = "Blues"
@@ -53,7 +53,7 @@ def plot_shares(ds: xr.Dataset, **options: Unpack[FigureOptions]) -> "AxesArray"
     share = ds["regime_share"]
     seen = share["outcome"].values[(share.values > 0.0).any(axis=(1, 2, 3))].tolist()
     there = [name for name in _OUTCOMES if name in (seen or share["outcome"].values)]
-    title = str(ds.attrs.get("title", ""))
+    title = title_of_map(ds)
     panels = current().chosen((m, name) for m in range(ds.sizes["mu"]) for name in there)
     columns = current().columns(min(len(there), len(panels)))
     axes = grid_of_panels(len(panels), columns, 3.6, title)

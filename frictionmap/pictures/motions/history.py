@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ... import regimes
+from ...datasets.labels import regime_of_choice
 from ...errors import InputError
 from ...files.stored import stored_general
 from ..drawing import with_options
@@ -251,8 +252,8 @@ def _shade_stops(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray, trace:
 
 def _regime_of(ds: xr.Dataset) -> int | None:
     """Regime of a steady state: of the contact that was chosen, or of all; None if the file has none."""
-    names = ["regime"] if "contact" in ds.dims else ["contact_regime", "regime"]
-    return next((int(ds[name]) for name in names if name in ds), None)
+    name = regime_of_choice(ds)
+    return int(ds[name]) if name in ds else None
 
 
 def _counts(ds: xr.Dataset) -> str:

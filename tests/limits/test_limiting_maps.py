@@ -81,3 +81,15 @@ def test_extreme_ratios_end_with_an_answer():
         resolved = ds.status == regimes.RESOLVED
         assert np.all((ds.regime != regimes.UNRESOLVED).where(resolved, True))
         assert np.all(np.isfinite(ds.contact_amplitude).where(resolved, True))
+
+
+def test_a_cell_alone_is_resolved_as_in_a_map():
+    """Without damping a motion may take longer than allowed to settle; for mu = 1 it has one steady state."""
+    system = fm.System("joined-base-wall")
+    r, beta = 0.3125763125763126, np.linspace(0.0, 4.0, 4096)[:10]
+    outputs = ["regime", "stops_per_cycle", "contact_amplitude", "status"]
+    alone = fm.sweep(system, [r], beta[9:], outputs=outputs)
+    row = fm.sweep(system, [r], beta, outputs=outputs).isel(beta=[9])
+    assert alone.status.item() == row.status.item() == 0
+    assert alone.stops_per_cycle.item() == row.stops_per_cycle.item() == 2.0
+    np.testing.assert_allclose(alone.contact_amplitude, row.contact_amplitude, rtol=1e-11)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...regimes import CLOSED_FORM, CONTINUOUS, PERMANENT_STICKING, RESOLVED
+from ...regimes import CLOSED_FORM, CONTINUOUS, IRREGULAR, NOT_REACHED, PERMANENT_STICKING, RESOLVED
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from ..continuous_motion import continuous_amplitude
@@ -19,6 +19,10 @@ from .segment_table import segment_columns
 #: Number of open cells of a row after which the search from the neighbour's orbit starts anew.  Jobs begin
 #: only there and at the start of rows, so that no result depends on how the map is divided into jobs.
 RESTART = 256
+
+#: Where a motion with mu = 1 does not settle, its steady state is followed from that of this share of the
+#: friction, in so many steps.
+_FROM, _STEPS = 0.75, 8
 
 
 class Axes(NamedTuple):
@@ -170,6 +174,34 @@ def _row_of(cells, cell):
 
 
 @kernel
+def _settled_cell(motion, system, place, beta, mu, limits, moving, cancel):
+    """Find the steady state of an open cell; return its contact, and the cell.
+
+    Where the start does not matter (mu = 1), but the motion takes longer than allowed to settle, Newton's
+    method finds its steady state from those at less friction.
+
+    Parameters
+    ----------
+    motion : a kind of motion
+    system, limits, moving, cancel : see `fill_open`
+    place : indices of mu and r
+    beta, mu : of the cell
+    """
+    m, i = place
+    contact = contact_at(system, m, i, beta, mu)
+    found = steady_state(motion, contact, start(motion, system, i, contact, moving), moving, limits, cancel)
+    if mu == 1.0 and (found.status == IRREGULAR or found.status == NOT_REACHED):
+        forget_neighbour(motion)
+        for k in range(_STEPS + 1):
+            share = _FROM + (1.0 - _FROM) * k / _STEPS
+            contact = contact_at(system, m, i, share * beta, mu)
+            found = steady_state(
+                motion, contact, start(motion, system, i, contact, moving), moving, limits, cancel
+            )
+    return contact, found
+
+
+@kernel
 def _fill_cells(place, low, positions, axes, system, motion, limits, moving, out, further, cancel):
     """Fill open cells of one row; stop soon after cancel[0] is set.
 
@@ -191,9 +223,7 @@ def _fill_cells(place, low, positions, axes, system, motion, limits, moving, out
             forget_neighbour(motion)
         j = low + position
         beta, mu = axes.beta[j], axes.mu[m]
-        contact = contact_at(system, m, i, beta, mu)
-        contact_state = start(motion, system, i, contact, moving)
-        found = steady_state(motion, contact, contact_state, moving, limits, cancel)
+        contact, found = _settled_cell(motion, system, place, beta, mu, limits, moving, cancel)
         store(out, m, i, j, j + 1, found, motion.load)
         motion.scratch.left[0] = math.inf  # the orbit is known, so following it ends
         _write_further(further, motion, contact, found, m, j, beta)
@@ -243,9 +273,7 @@ def _find_cell(system, motion, beta, mu, limits, moving, cancel):
     """
     system, motion = packed(system), packed(motion)
     forget_neighbour(motion)
-    contact = contact_at(system, 0, 0, beta, mu)
-    contact_state = start(motion, system, 0, contact, moving)
-    found = steady_state(motion, contact, contact_state, moving, limits, cancel)
+    contact, found = _settled_cell(motion, system, (0, 0), beta, mu, limits, moving, cancel)
     if found.slides > 0:
         motion.scratch.left[0] = math.inf  # the orbit is known, so following it ends
     return contact, found

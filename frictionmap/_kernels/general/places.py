@@ -41,8 +41,9 @@ _SAFETY = 4.0
 #: ends there: all that changes faster, and could move it beyond, is over by then.
 _CREEPS, _LEFT = 16, 0.5
 
-#: Rows of `Places.creep`: periods in which a contact slid in one direction, and its excess before.
-_PERIODS, _BEFORE = 0, 1
+#: Rows of `Places.creep`: periods in which a contact crept or stayed, its excess before the present _CREEPS
+#: ones, and whether enough of it was left after those before.
+_PERIODS, _BEFORE, _SLOWLY = 0, 1, 2
 
 #: Share of the friction that is rounding error of the forces, and the one to which they are wanted.
 _ROUNDING = 1e-12
@@ -69,7 +70,7 @@ class Places(NamedTuple):
     )  # (2, N) lowest f + limit nu and highest f - limit nu in it; limits of 0 for a constant nu
     flexibility: np.ndarray  # (N, N) places per constant force, with a sign
     gains: np.ndarray  # (N,) largest force over the size of a difference of two motions, see `_difference`
-    creep: np.ndarray  # (2, N), see `_note_creep`
+    creep: np.ndarray  # (3, N), see `_note_creep`
     change: np.ndarray  # (N,) constant forces by which the places of a motion differ from those in the orbit
     moved: np.ndarray  # (M,) displacement of the modes under these
     matrix: np.ndarray  # (N, N) scratch
@@ -85,7 +86,7 @@ def make_places(problem):
     return Places(
         np.zeros(contacts, np.int64), np.zeros((2, contacts)), np.zeros((3, width)),
         np.zeros(contacts, np.int64), np.zeros(contacts), np.zeros((2, contacts)), np.zeros(square),
-        np.zeros(contacts), np.zeros((2, contacts)), np.zeros(contacts), np.zeros(width), np.zeros(square),
+        np.zeros(contacts), np.zeros((3, contacts)), np.zeros(contacts), np.zeros(width), np.zeros(square),
         np.zeros(width),
     )  # fmt: skip
 
@@ -307,7 +308,8 @@ def _sides(problem, friction, places, j):
 
 @kernel
 def _note_creep(problem, friction, memory, places):
-    """Count the periods in which each contact at rest slid to where its force no longer exceeds its friction.
+    """Count the periods in which each contact at rest stayed where it was, or slid to where its force no
+    longer exceeds its friction.
 
     Parameters
     ----------
@@ -319,23 +321,22 @@ def _note_creep(problem, friction, memory, places):
     for j in range(places.rests.size):
         high, low = _sides(problem, friction, places, j)
         excess, way = max(high, low), 1.0 if high > low else 2.0
-        if memory.counts[MOVED, j] != way or excess <= 0.0:
-            creep[_PERIODS, j] = 0.0
+        moved = memory.counts[MOVED, j]
+        if moved != 0.0 and (moved != way or excess <= 0.0):
+            creep[_PERIODS, j] = creep[_SLOWLY, j] = 0.0
             continue
-        if creep[_PERIODS, j] == 0.0 or creep[_PERIODS, j] == _CREEPS:
-            creep[_PERIODS, j], creep[_BEFORE, j] = 0.0, excess
+        if creep[_PERIODS, j] % _CREEPS == 0.0:
+            slowly = creep[_PERIODS, j] > 0.0 and excess >= _LEFT * creep[_BEFORE, j]
+            creep[_SLOWLY, j], creep[_BEFORE, j] = 1.0 if slowly else 0.0, excess
         creep[_PERIODS, j] += 1.0
-
-
-@kernel
-def _creeps(excess, places, j):
-    """Whether a contact ends where its force just reaches its friction."""
-    return places.creep[_PERIODS, j] == _CREEPS and excess >= _LEFT * places.creep[_BEFORE, j]
 
 
 @kernel
 def _is_settled(problem, friction, difference, safety, places):
     """Whether the places are known that the contacts at rest end at.
+
+    Where one creeps, it causes the difference from the steady state: another that stays where it is, within
+    its friction, ends there.
 
     Parameters
     ----------
@@ -344,15 +345,22 @@ def _is_settled(problem, friction, difference, safety, places):
     safety : see `_SAFETY`
     places : Places after `_note_creep`
     """
+    creeping, waiting = 0, 0
     for j in range(places.rests.size):
-        if places.rests[j] != 0:
-            limit = friction.static[j]
-            high, low = _sides(problem, friction, places, j)
-            excess, reach = max(high, low), places.gains[j] * difference
-            fits = excess + safety * reach <= _ROUNDING * limit or reach <= _PRECISE * limit
-            if not fits and not _creeps(excess, places, j):
-                return False
-    return True
+        if places.rests[j] == 0:
+            continue
+        limit = friction.static[j]
+        high, low = _sides(problem, friction, places, j)
+        excess, reach = max(high, low), places.gains[j] * difference
+        if excess + safety * reach <= _ROUNDING * limit or reach <= _PRECISE * limit:
+            continue
+        if excess > 0.0 and places.creep[_SLOWLY, j] != 0.0:
+            creeping += 1
+        elif excess <= 0.0 and places.creep[_PERIODS, j] >= _CREEPS:
+            waiting += 1
+        else:
+            return False
+    return waiting == 0 or creeping > 0
 
 
 @kernel

@@ -151,7 +151,7 @@ def _place(problem, state, work, j):
 
 
 @kernel
-def _fill_flexibility(problem, places):
+def fill_flexibility(problem, places):
     """Fill the change of places, with its sign turned, by constant forces in the contacts at rest."""
     contacts, modes = problem.chi.shape
     for a in range(contacts):
@@ -467,7 +467,7 @@ def keep_orbit_anew(problem, row, friction, halves, tolerance, work, memory, rec
     -------
     (kept, cycles) : whether that was possible; periods followed
     """
-    _fill_flexibility(problem, places)
+    fill_flexibility(problem, places)
     _move_to_zero(problem, row, work, memory, places)
     round_state(memory)
     if not stop_contacts(problem, row, work, memory):
@@ -535,7 +535,7 @@ def keep_held(problem, row, friction, tolerance, work, memory, record, places):
     """
     keep_limits(friction, places)
     _hold_all(friction, memory, places)
-    _fill_flexibility(problem, places)
+    fill_flexibility(problem, places)
     if not stop_contacts(problem, row, work, memory):
         return False
     status, _ = newton(problem, row, friction, 2, tolerance, work, memory, record)

@@ -39,8 +39,10 @@ from .orbits import (
 )
 from .places import (
     Places,
+    fill_flexibility,
     find_rests,
     keep_limits,
+    keep_orbit,
     keep_orbit_anew,
     make_places,
     restore_limits,
@@ -395,16 +397,21 @@ def _settle(problem, friction, state, found, cycles, tolerance, tools):
     Steady
     """
     row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
-    places = tools.places
+    places, ring = tools.places, tools.ring
     halves = found.halves if found.halves % 2 == 0 else 2 * found.halves
+    if not is_unique(friction):  # the motion is near the steady state, which stays where it cannot be moved
+        fill_flexibility(problem, places)
+        if not keep_orbit(problem, row, friction, halves, work, memory, record, places):
+            take_orbit(memory, ring)
+            return found
+        go_back(memory, ring, 0)
+        _, more = settle_places(problem, row, friction, halves, cycles, work, memory, record, places)
+        return Steady(REPEATS, halves, found.cycles + more)
     kept, spent = keep_orbit_anew(problem, row, friction, halves, tolerance, work, memory, record, places)
     spent += found.cycles
     if not kept:
         return Steady(NO_REPEAT, 0, spent)
-    if is_unique(friction):
-        from_rest(problem, row, friction, state, work, memory, record, NOTHING)
-    else:
-        go_back(memory, tools.ring, 0)
+    from_rest(problem, row, friction, state, work, memory, record, NOTHING)
     known, more = settle_places(problem, row, friction, halves, cycles, work, memory, record, places)
     return Steady(REPEATS if known else NO_REPEAT, halves, spent + more)
 

@@ -9,6 +9,7 @@ loops            permanent sticking of contacts that close a loop
 boundaries       boundaries over r: permanent sticking, no stops, one-way sliding on belts
 partial          least friction at which one contact sticks while the others move
 starts           initial states: at rest, or in a large sliding motion
+still            masses that do not move
 maps             the cells of a map, on several threads
 dataset          maps and boundaries as labelled variables
 recorded         one steady state and the series of its steps, from the kernels

@@ -14,6 +14,7 @@ from .boundaries import friction_lines
 from .held import held_ranges
 from .problem import general_of, problem_of, static_offset
 from .starts import initial_states
+from .still import put_still
 
 #: Cells of a job at least, in whole rows: a job costs as much as a few cells.
 _IN_A_JOB = 64
@@ -103,6 +104,8 @@ def solve_cells(
     for at_zero in np.flatnonzero(r == 0.0):
         _put_r_zero(found, int(at_zero), beta[at_zero], beta_stick)
     _put_stuck(system, r, found)
+    if masses:
+        put_still(general, found.contact_regime, found.lowest, found.highest)
     _put_offset(system, found, count)
     return found
 

@@ -17,6 +17,7 @@ from .cycle import cycle_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
 from .problem import general_of, static_offset
 from .steps import Steps, steps_of
+from .still import put_still, still_masses
 
 
 def _overall(found: list[int]) -> int:
@@ -88,9 +89,10 @@ def scalars(system: System, steps: Steps) -> dict[str, np.ndarray]:
     }
     rests = np.array([steps.regime(j) == regimes.PERMANENT_STICKING for j in range(count)])
     still = rests & (steps.problem.spring == 0.0)
-    low, high = steps.lowest, steps.highest
-    largest = np.maximum(np.abs(low), np.abs(high))
     own = [steps.regime(j) for j in range(count)]
+    low, high = steps.lowest.copy(), steps.highest.copy()
+    put_still(general, np.array([own]), low[np.newaxis], high[np.newaxis])
+    largest = np.maximum(np.abs(low), np.abs(high))
     found |= {
         "regime": np.array(_overall(own)),
         "contact_regime": np.array(own),
@@ -151,8 +153,11 @@ def general_response(
     refuse_static(general, np.array([mu]))
     steps = steps_of(system, r, beta, mu, solver)
     tau = np.linspace(0.0, 2.0 * np.pi * steps.shown, points * steps.shown + 1)
-    traces = _traces(system, steps, tau)
+    traces, found = _traces(system, steps, tau), scalars(system, steps)
     count = general.count
+    rests = found["contact_regime"] == regimes.PERMANENT_STICKING
+    for i in np.flatnonzero(still_masses(general, rests)):
+        traces["x"][i], traces["v"][i] = found["midpoint"][i], 0.0
     variables: dict[str, xr.Variable] = {}
     for name, values in traces.items():
         if name in CONTACT_TRACES:
@@ -163,7 +168,6 @@ def general_response(
     variables |= {name: label_variable(name, values) for name, values in events.items()}
     for old, new in OLDER_NAMES["response"].items():
         variables[old] = variables[new].copy(deep=False)
-    found = scalars(system, steps)
     found |= cycle_values(system, steps, HARMONICS)
     for name, values in found.items():
         if is_wanted(name, general):

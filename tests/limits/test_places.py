@@ -136,3 +136,19 @@ def test_friction_never_exceeds_its_limit(stiffness):
             motion = fm.response(two_masses(**further), r=r, beta=beta)
             limit = np.array([beta, 0.5 * beta])
             assert (abs(motion.friction).max("tau").values <= limit * (1.0 + 1e-11)).all(), (r, beta)
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1e3])
+def test_a_mass_that_a_contact_holds_does_not_move(ratio):
+    system = fm.System(
+        mass_ratios=[1.0, 1.3, 0.7], stiffness_ratios=[1.0, 0.8, 1.1], damping_ratios=0.02,
+        contacts=[fm.Contact("fixed-wall", 1), fm.Contact("fixed-wall", 3, ratio=ratio)], load_mass=2,
+    )  # fmt: skip
+    found = fm.sweep(system, [0.4, 0.9, 1.7], np.linspace(0.1, 2.0, 9), outputs=OUTPUTS)
+    rests = found.contact_regime.values == PERMANENT_STICKING
+    assert rests.any(axis=(0, 1, 2)).all()
+    for contact, mass in ((0, 0), (1, 2)):
+        assert (found.peak_to_peak.values[rests[..., contact], mass] == 0.0).all()
+    motion = fm.response(system, r=0.9, beta=2.0)
+    assert np.ptp(motion.x.values[2]) == 0.0
+    assert (motion.v.values[2] == 0.0).all()

@@ -402,11 +402,12 @@ def follow(problem, row, friction, part, work, law, counts, record, derive):
 
 @kernel
 def follow_to_section(problem, row, friction, begin, work, law, counts, record):
-    """Follow the motion from a phase 0 <= `begin` < 2 pi to the next section.
+    """Follow the motion from a phase to the next section.
 
     Parameters
     ----------
     problem, row, friction, work, law, counts, record : see `follow`
+    begin : the phase, from 0 to 2 pi
 
     Returns
     -------

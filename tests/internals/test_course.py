@@ -56,9 +56,8 @@ def settle(problem, friction, start, tools):
 def measure(problem, friction, halves, tools):
     """Follow one period of the motion into the counters and the record."""
     problem, friction, tools = packed(problem), packed(friction), packed(tools)
-    steady.measure(
-        problem, tools.row, friction, halves, tools.work, tools.memory, tools.record, record.RANGES
-    )
+    memory, kept = tools.memory, tools.record
+    steady.measure(problem, tools.row, friction, halves, tools.work, memory, kept, tools.ring, record.RANGES)
 
 
 @own_entry

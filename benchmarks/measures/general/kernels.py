@@ -70,7 +70,11 @@ def _solve_cells(problem, forces, starts, tools, friction, found):
         )
         if steady.status != REPEATS:
             continue
-        halves, multiplier = measure(problem, row, friction, steady.halves, work, memory, record, RANGES)
+        halves, multiplier = measure(
+            problem, row, friction, steady.halves, work, memory, record, tools.ring, RANGES
+        )
+        if halves == 0:
+            continue
         found.multiplier[k] = multiplier ** (1.0 / steady_period(steady.halves))
         for j in range(contacts):
             moved = memory.counts[MOVED, j] != 0.0

@@ -20,7 +20,7 @@ from .data import fit_clipped, measured_record, whole_record
 from .errors import DERIVED, derived_values, record_errors
 from .fit import RecordFit
 from .labels import of_data, of_record, one_mass
-from .motion import CONTACTS, LAW, MU, PARAMETERS, X_F, ZETA, outer
+from .motion import CONTACTS, LAW, MU, OFFSET, PARAMETERS, X_F, ZETA, outer
 from .static_friction import IDLE, ONE
 from .verdict import listed, record_verdict
 
@@ -159,7 +159,10 @@ def record(
 def _check_identifiable(fit: RecordFit) -> None:
     """Refuse a motion that does not depend on some parameters, or not in ways of their own."""
     indices, _ = undetermined(fit.problem, fit.solution)
-    names = [fit.mass.names[index] for index in indices if index < len(PARAMETERS)]
+    found = {int(index) for index in indices if index < len(PARAMETERS)}
+    if X_F in found and fit.free[OFFSET]:
+        found.add(OFFSET)  # a contact that does not slip holds the mass at any place
+    names = [fit.mass.names[index] for index in sorted(found)]
     if names:
         raise InputError(
             f"cannot identify {listed(names)}: the contact of the fitted motion does not slip, or hardly; "

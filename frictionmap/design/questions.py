@@ -16,19 +16,32 @@ from .answers import answer
 from .at_most import find_ranges
 from .band import Band, checked_band, peak_samples
 from .force_plane import checked_plane, find_in_plane
-from .least_peak import TWO_PEAKS, Minimum, Optimum, find_optimum, find_robust, largest
+from .least_peak import (
+    THRESHOLD,
+    TWO_PEAKS,
+    Minimum,
+    Optimum,
+    find_optimum,
+    find_robust,
+    irregular_cells,
+    largest,
+)
 from .limits import (
     boundary_samples,
     has_no_stop_limit,
     largest_stick,
-    least_no_stop,
-    nearest_crossing,
+    nearest,
+    no_stop_at,
     no_stop_limit,
+    starts_matter,
+    stick_at,
     stick_limit,
 )
+from .minimum import Points
 from .performance import PerformanceCurve
 from .responses import Responses
 from .samples import SampledPerformance, Samples, sample_values, sampled
+from .stops import least_with_stops
 from .task import Task, checked_task
 
 #: Relative changes of the friction at which the response is given beside the answer.
@@ -113,7 +126,8 @@ def least_peak(
     """
     if not isinstance(spread, Samples):
         spread = _checked_spread(spread)
-    task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units)
+    wide = 0.0 if isinstance(spread, Samples) else spread
+    task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units, wide)
     if isinstance(spread, Samples):
         return _answer_for_samples(task, spread, widen=beta is None)
     curve = task.performance()
@@ -277,8 +291,10 @@ def no_stop(system: System, band: Any, mu: float = 1.0, *, units: Units | None =
     (0.005620882, 0.333310347)
     """
     checked, scales = _checked(system, band, mu, units)
-    beta, r = least_no_stop(system, checked, mu)
-    found = {"beta": beta, "at_r": r, "mu": mu, **_boundaries(system, checked, mu)}
+    every, some, points = least_with_stops(system, checked, mu)
+    found = {"beta": every.beta, "at_r": every.r, "mu": mu, **_boundaries(system, mu, points)}
+    if starts_matter(system, mu):
+        found["beta_no_stop_some_starts"] = some.beta
     return answer("no-stop", system, checked, found, {"mu": mu}, units, scales)
 
 
@@ -308,8 +324,10 @@ def stuck(system: System, band: Any, mu: float = 1.0, *, units: Units | None = N
     2.25
     """
     checked, scales = _checked(system, band, mu, units)
-    beta, r = largest_stick(system, checked, mu)
-    found = {"beta": beta, "at_r": r, "mu": mu, **_boundaries(system, checked, mu)}
+    beta, r = largest_stick(system, checked, None)
+    found = {"beta": beta, "at_r": r, "mu": mu, **_boundaries_over(system, checked, mu)}
+    if starts_matter(system, mu):
+        found["beta_stuck_some_starts"] = largest_stick(system, checked, mu).beta
     return answer("stuck", system, checked, found, {"mu": mu}, units, scales)
 
 
@@ -351,16 +369,16 @@ def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units |
     beta = checks.number(_single(beta, "beta", KINDS["beta"], scales), "beta", above=0.0)
     mu = checks.number(mu, "mu", least=1.0)
     found: dict[str, Any] = {"at_r": r, "beta": beta, "mu": mu}
-    limits = {"beta_stick": (stick_limit, "margin_r_stick")}
+    limits: dict[str, tuple] = {"beta_stick": (stick_limit, stick_at, "margin_r_stick")}
     if has_no_stop_limit(system):
-        limits["beta_lim"] = no_stop_limit, "margin_r"
-    for name, (limit, margin_r) in limits.items():
+        limits["beta_lim"] = no_stop_limit, no_stop_at, "margin_r"
+    for name, (limit, at, margin_r) in limits.items():
         value = float(limit(system, np.array([r]), mu)[0])
-        nearest = nearest_crossing(limit, system, r, beta, mu)
+        place = nearest(at(system, beta, mu), system, r)
         found |= {name: value, f"margin_{name}": value / beta - 1.0}
-        found |= {f"nearest_r_on_{name}": nearest, margin_r: nearest / r - 1.0}
+        found |= {f"nearest_r_on_{name}": place, margin_r: place / r - 1.0}
     around = Band(r / 2.0, 2.0 * r)
-    found |= _boundaries(system, around, mu)
+    found |= _boundaries_over(system, around, mu)
     return answer("margin", system, around, found, {"r": r, "beta": beta, "mu": mu}, units, scales)
 
 
@@ -385,12 +403,22 @@ def _checked(system: Any, band: Any, mu: Any, units: Units | None) -> tuple[Band
     return checked_band(band, scales), scales
 
 
-def _boundaries(system: System, band: Band, mu: float) -> dict[str, np.ndarray]:
+def _boundaries_over(system: System, band: Band, mu: float) -> dict[str, np.ndarray]:
     """The boundaries over a band, for pictures."""
     r = boundary_samples(system, band)
+    if not has_no_stop_limit(system):
+        return _boundaries(system, mu, Points(r, np.empty(0)))
+    return _boundaries(system, mu, Points(r, no_stop_limit(system, r, mu)))
+
+
+def _boundaries(system: System, mu: float, no_stop: Points) -> dict[str, np.ndarray]:
+    """The boundaries at the frequencies at which beta_lim is known, if the system has one, for pictures."""
+    r = no_stop.beta
     found = {"r_search": r, "beta_stick_of_r": stick_limit(system, r, mu)}
-    if has_no_stop_limit(system):
-        found["beta_lim_of_r"] = no_stop_limit(system, r, mu)
+    if no_stop.size.size:
+        found["beta_lim_of_r"] = no_stop.size
+    if starts_matter(system, mu):
+        found["beta_stuck_of_r"] = stick_limit(system, r, None)
     return found
 
 
@@ -400,26 +428,34 @@ def _answer(
     study: Mapping[str, Any] | None = None,
 ) -> xr.Dataset:  # fmt: skip
     """Build the dataset of a question about the largest response."""
-    best, peaks = optimum.best, optimum.peaks
-    listed = peaks.above(_LISTED * peaks.largest).by_frequency(TWO_PEAKS)
-    states = curve.states(listed)
+    best = optimum.best
     second = optimum.second or Minimum(np.nan, np.nan, "")
     points = optimum.points
+    unknown = [curve.unknown[beta].number if beta in curve.unknown else 0 for beta in points.beta.tolist()]
     found = {
-        "beta": best.beta, "mu": task.mu, "kind": best.kind, "peak": listed.size, "peak_r": listed.r,
-        "peak_regime": states.regime, "peak_stops": states.stops,
+        "beta": best.beta, "mu": task.mu, "kind": best.kind, **_peaks(curve, optimum, "spread" in asked),
         "second_beta": second.beta, "second_peak": second.size,
         "beta_search": points.beta, "peak_of_beta": points.size,
-        "unknown_of_beta": [curve.unknown.get(beta, 0) for beta in points.beta.tolist()],
+        "unknown_of_beta": unknown,
         "offset": _OFFSETS, "peak_at_offset": largest(curve.whole(best.beta * (1.0 + _OFFSETS))),
-        "beta_no_stop": task.no_stop_up_to, "beta_stuck": task.stuck_from,
-        **_response_curves(task, best.beta), **(further or {}),
+        **({} if study else task.limits()), **(further or {}), **_response_curves(task, best.beta),
         **{name: value for name, value in asked.items() if name in DESIGN},
     }  # fmt: skip
-    if "spread" in asked:
-        found["peak"] = np.concatenate(([best.size], listed.size[1:]))
     keys = {"response": task.response.asked(), "mu": task.mu, "beta": [task.low, task.high], **asked}
-    return answer(question, task.system, task.band, found, keys, task.units, task.scales, study)
+    ds = answer(question, task.system, task.band, found, keys, task.units, task.scales, study)
+    caution = irregular_cells(curve, best.beta)
+    return ds.assign_attrs(warnings=caution) if caution else ds
+
+
+def _peaks(curve: PerformanceCurve, optimum: Optimum, of_spread: bool) -> dict[str, Any]:
+    """The peaks of an answer, the largest one first: with a spread the worst in it.  A threshold has none."""
+    best, peaks = optimum.best, optimum.peaks
+    if best.kind == THRESHOLD:
+        return {"peak": [0.0], "at_r": peaks.r[0]}
+    listed = peaks.above(_LISTED * peaks.largest).by_frequency(TWO_PEAKS)
+    states = curve.states(listed)
+    size = np.concatenate(([best.size], listed.size[1:])) if of_spread else listed.size
+    return {"peak": size, "peak_r": listed.r, "peak_regime": states.regime, "peak_stops": states.stops}
 
 
 def _answer_for_samples(task: Task, samples: Samples, *, widen: bool) -> xr.Dataset:
@@ -439,7 +475,7 @@ def _response_curves(task: Task, beta: float) -> dict[str, np.ndarray]:
     r = peak_samples(task.system, task.band)
     levels = np.unique(np.concatenate(([0.0] if task.may_be_without_friction else [], beta * _CURVES)))
     sizes = responses.on_grid(r, levels).size.T
-    if np.isfinite(task.stuck_from):
-        sizes = np.vstack((sizes, responses.on_grid(r, np.array([1.01 * task.stuck_from])).size.T))
+    if np.isfinite(task.stuck.beta):
+        sizes = np.vstack((sizes, responses.on_grid(r, np.array([1.01 * task.stuck.beta])).size.T))
         levels = np.append(levels, np.inf)
     return {"curve": levels, "r_search": r, "response_of_r": sizes}

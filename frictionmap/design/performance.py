@@ -115,14 +115,19 @@ class PerformanceCurve(Protocol):
 
 
 def _note(
-    table: dict[float, Unclear], beta: np.ndarray, r: np.ndarray, seen: np.ndarray, peak: np.ndarray
-) -> None:
-    """Put cells (k,) into a table by their beta; of a beta that it has, if they are more."""
+    table: dict[float, Unclear], beta: np.ndarray, r: np.ndarray, seen: np.ndarray, peak: np.ndarray,
+    *, count: bool,
+) -> None:  # fmt: skip
+    """Put cells (k,) into a table by their beta; of a beta that it has, if they are more.
+
+    count : whether to count them; those of a refinement are close to one another and count as one
+    """
     for level in np.unique(beta).tolist():
         own = np.flatnonzero(beta == level)
         worst = own[np.argmax(np.where(np.isnan(seen[own]), np.inf, seen[own]))]
-        if level not in table or own.size > table[level].number:
-            table[level] = Unclear(own.size, float(r[worst]), float(seen[worst]), float(peak[worst]))
+        number = own.size if count else 1
+        if level not in table or number > table[level].number:
+            table[level] = Unclear(number, float(r[worst]), float(seen[worst]), float(peak[worst]))
 
 
 class Performance:
@@ -195,7 +200,7 @@ class Performance:
         unknown = unresolved(values) | (moves & ~low)
         seen = np.where(moves, values.irregular, np.nan)
         for table, which in ((self.unknown, unknown), (self.harmless, moves & ~unknown)):
-            _note(table, *(array[which] for array in (beta, r, seen, peak)))
+            _note(table, *(array[which] for array in (beta, r, seen, peak)), count=which.ndim == 2)
         return unknown
 
     def _brackets(self, r: np.ndarray, size: np.ndarray) -> Brackets:

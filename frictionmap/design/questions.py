@@ -30,14 +30,12 @@ from .limits import (
     boundary_samples,
     has_no_stop_limit,
     largest_stick,
-    nearest,
-    no_stop_at,
     no_stop_limit,
     starts_matter,
-    stick_at,
     stick_limit,
 )
 from .minimum import Points
+from .nearest import around, nearest, no_stop_at, stick_at
 from .performance import PerformanceCurve
 from .responses import Responses
 from .samples import SampledPerformance, Samples, sample_values, sampled
@@ -89,8 +87,8 @@ def least_peak(
     contact : int
         Contact of quantity "contact", counted from 1.
     beta : array_like, shape (2,), optional
-        Range of friction ratios F/P to search; default: from 0 to 1.25 times the largest beta_stick of the
-        band.  Without damping it begins where all peaks in the band are finite.
+        Range of friction ratios F/P to search; default: from 0 to 1.25 times the friction that holds over the
+        band, further with a spread.  Without damping it begins where all peaks in the band are finite.
     threads : int, optional
         Number of threads; default: all processors of the process.  The result does not depend on it.
     units : Units, optional
@@ -101,18 +99,22 @@ def least_peak(
     xarray.Dataset
         `beta`, the friction ratio; on `peak` the largest responses over frequency there, from the highest
         down (equal ones by frequency), with `peak_r`, `peak_regime` and `peak_stops`; `kind` of the optimum;
+        of a "threshold", from which on nothing moves, the peak is 0, and `at_r`, the frequency that decides,
+        takes the place of these;
         `second_beta` and
         `second_peak` of another minimum within 5 %; `peak_at_offset`, the response with 2 % and 20 % more and
         less friction; `peak_of_beta` on `beta_search`, the performance curve; `beta_no_stop` and
-        `beta_stuck` of the band; `response_of_r` (curve, r_search), response curves.  With units also
-        `friction_force` [N], `peak_frequency` [Hz] and `peak_m` [m].
+        `beta_stuck` of the band, with mu > 1 also `beta_no_stop_some_starts` and `beta_stuck_some_starts`;
+        `response_of_r` (curve, r_search), response curves.  With units also `friction_force` [N],
+        `peak_frequency` [Hz] and `peak_m` [m].  Attribute `warnings`: irregular motions that were left out.
 
     Raises
     ------
     InputError
         An argument has the wrong type or is out of range, or nothing moves in the band.
     NoSteadyState
-        Cells of the band have no periodic steady state: the largest response may be among them.
+        Cells of the band have no periodic steady state, and the largest response may be among them: an
+        irregular motion of which three quarters of the peak or more were seen, or none that was found.
 
     Examples
     --------
@@ -266,7 +268,10 @@ def at_most(
 
 
 def no_stop(system: System, band: Any, mu: float = 1.0, *, units: Units | None = None) -> xr.Dataset:
-    """Find the most friction without a stop anywhere in a band: the least beta_lim, theory.md 3.
+    """Find the most friction without a stop anywhere in a band: with mu = 1 the least beta_lim, theory.md 3.
+
+    With mu > 1 motions are followed from many initial states, in which a contact is about to slip at any
+    phase of the load: none of them goes on stopping.  That is no proof that no other one does.
 
     Parameters
     ----------
@@ -277,11 +282,13 @@ def no_stop(system: System, band: Any, mu: float = 1.0, *, units: Units | None =
     -------
     xarray.Dataset
         `beta`, and `at_r`, the frequency that decides; `beta_lim_of_r` and `beta_stick_of_r` on `r_search`.
+        With mu > 1 also `beta_no_stop_some_starts`, the least beta_lim: up to there motions without stops
+        exist.
 
     Raises
     ------
     InputError
-        An argument has the wrong type or is out of range, or all contacts have springs.
+        An argument has the wrong type or is out of range, or a contact has a spring.
 
     Examples
     --------
@@ -301,6 +308,9 @@ def no_stop(system: System, band: Any, mu: float = 1.0, *, units: Units | None =
 def stuck(system: System, band: Any, mu: float = 1.0, *, units: Units | None = None) -> xr.Dataset:
     """Find the least friction that holds over a band: the largest beta_stick, or beta_noslip, theory.md 4.
 
+    With mu > 1 it holds whatever the initial state: mu beta_stick, with which kinetic friction is enough and
+    every motion comes to rest, theory.md 6.
+
     Parameters
     ----------
     system, band, mu, units
@@ -310,7 +320,9 @@ def stuck(system: System, band: Any, mu: float = 1.0, *, units: Units | None = N
     -------
     xarray.Dataset
         `beta`, infinite where a structure that is held resonates without damping, and `at_r`, the frequency
-        that decides; `beta_lim_of_r` and `beta_stick_of_r` on `r_search`.
+        that decides; `beta_lim_of_r` and `beta_stick_of_r` on `r_search`.  With mu > 1 also
+        `beta_stuck_some_starts`, the largest beta_stick, with which contacts that are stuck stay so (one
+        mass: from rest), and `beta_stuck_of_r`.
 
     Raises
     ------
@@ -349,7 +361,7 @@ def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units |
         `beta_lim` and `beta_stick` at r, `margin_beta_lim` and `margin_beta_stick`: how much they are above
         beta, relative to beta; `nearest_r_on_beta_lim` and `nearest_r_on_beta_stick`, the nearest frequencies
         within a factor of ten at which a boundary is beta (NaN: none), `margin_r` and `margin_r_stick`: how
-        far they are, relative to r.
+        far they are, relative to r.  With mu > 1 the boundaries are those of some initial states.
 
     Raises
     ------
@@ -372,14 +384,16 @@ def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units |
     limits: dict[str, tuple] = {"beta_stick": (stick_limit, stick_at, "margin_r_stick")}
     if has_no_stop_limit(system):
         limits["beta_lim"] = no_stop_limit, no_stop_at, "margin_r"
+    low = 0.5 * r
     for name, (limit, at, margin_r) in limits.items():
-        value = float(limit(system, np.array([r]), mu)[0])
-        place = nearest(at(system, beta, mu), system, r)
+        value, line = float(limit(system, np.array([r]), mu)[0]), at(system, beta, mu)
+        place = nearest(line, r)
+        low = max(low, around(line, r).low)
         found |= {name: value, f"margin_{name}": value / beta - 1.0}
         found |= {f"nearest_r_on_{name}": place, margin_r: place / r - 1.0}
-    around = Band(r / 2.0, 2.0 * r)
-    found |= _boundaries_over(system, around, mu)
-    return answer("margin", system, around, found, {"r": r, "beta": beta, "mu": mu}, units, scales)
+    shown = Band(low, 2.0 * r)
+    found |= _boundaries_over(system, shown, mu)
+    return answer("margin", system, shown, found, {"r": r, "beta": beta, "mu": mu}, units, scales)
 
 
 def _single(given: Any, name: str, kind: str, scales: Scales) -> Any:

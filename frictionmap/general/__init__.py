@@ -9,6 +9,7 @@ loops            permanent sticking of contacts that close a loop
 boundaries       boundaries over r: permanent sticking, no stops, one-way sliding on belts
 partial          least friction at which one contact sticks while the others move
 maps             the cells of a map, on several threads
+resting_starts   motions from many states in which a contact is at its limit of friction (mu > 1)
 dataset          maps and boundaries as labelled variables
 recorded         one steady state and the series of its steps, from the kernels
 steps            one steady state as the series of its steps

@@ -8,7 +8,8 @@ from .labels import Label
 QUESTIONS = ("least-peak", "no-stop", "stuck", "at-most", "margin", "robust", "two-forces")
 
 #: How the least peak comes about.
-KINDS_OF_OPTIMUM = ("smooth", "two equal peaks", "plateau", "at the bound")
+#: "threshold": from there on nothing moves.
+KINDS_OF_OPTIMUM = ("smooth", "two equal peaks", "plateau", "at the bound", "threshold")
 
 _PEAK, _SEARCH, _OVER_R, _RATIO = ("peak",), ("beta_search",), ("r_search",), ("ratio_search",)
 _FRICTION = "ratio of kinetic friction force to load amplitude"
@@ -67,8 +68,13 @@ ANSWERS = {
     "beta_of_ratio": _beta(f"{_FRICTION} with the least peak at each ratio", _RATIO),
     "spread": Label(np.float64, "relative spread of the friction", (), least=0.0, most=1.0),
     "limit": Label(np.float64, "largest response that is allowed", (), least=0.0),
-    "beta_no_stop": _beta("largest friction ratio without a stop anywhere in the band", nan=True),
-    "beta_stuck": _beta("least friction ratio that holds over the band", nan=True),
+    "beta_no_stop": _beta("largest friction ratio without a stop anywhere in the band; NaN if that depends "
+                          "on the start", nan=True),
+    "beta_stuck": _beta("least friction ratio that holds over the band, whatever the start", nan=True),
+    "beta_no_stop_some_starts": _beta("largest friction ratio with which motions without stops exist all "
+                                      "over the band: from some starts, not from all", nan=True),
+    "beta_stuck_some_starts": _beta("least friction ratio with which contacts that are stuck stay so over "
+                                    "the band: from some starts (one mass: from rest), not from all"),
     "interval_begin": _beta("friction ratio at which an allowed range begins", ("interval",)),
     "interval_end": _beta("friction ratio at which an allowed range ends", ("interval",)),
     "at_r": _r("frequency ratio that decides, or of the working point", nan=True),
@@ -82,6 +88,7 @@ ANSWERS = {
     "margin_r_stick": Label(np.float64, "nearest_r_on_beta_stick/r - 1", (), least=-1.0, nan=True),
     "beta_lim_of_r": _beta("boundary of motion without stops", _OVER_R, nan=True),
     "beta_stick_of_r": _beta("boundary to permanent sticking", _OVER_R),
+    "beta_stuck_of_r": _beta("friction ratio from which every motion comes to rest", _OVER_R),
     "response_of_r": Label(np.float64, "response over P/k1 (Y), or of a force over P", ("curve", "r_search"),
                            least=0.0, inf=True, nan=True),
     "friction_force": Label(np.float64, "kinetic friction force: the answer", (), least=0.0, inf=True,

@@ -7,7 +7,10 @@ watching     cancelling a question while it is computed
 extremes     maxima of functions of one variable, many at a time
 minimum      minima and crossings of curves with kinks
 band         the frequency band, and the frequencies at which curves over it are sampled
-limits       boundaries of the regimes over a band: their extremes and crossings
+grading      frequencies at which boundaries are sampled: close together beside resonances
+limits       boundaries of the regimes over a band: their least and largest values
+nearest      the frequency next to a working point at which a boundary is at its friction
+stops        the most friction without a stop whatever the start
 responses    the response that a design is about, at points (r, beta) of any system
 performance  the largest response over the band as a function of friction, with its peaks
 task         checks of arguments, the range of friction that is searched

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..errors import InputError
-from .least_peak import Optimum, find_optimum, largest
+from ..errors import InputError, NoSteadyState
+from .least_peak import Optimum, find_optimum, in_words, largest
 from .minimum import Points, changes, crossing
 from .performance import PerformanceCurve
 from .task import Task
@@ -19,6 +19,8 @@ def find_ranges(task: Task, curve: PerformanceCurve, limit: float) -> tuple[Opti
     ------
     InputError
         The limit is below the least peak.
+    NoSteadyState
+        A cell of the band has no periodic steady state, and may exceed the limit.
     """
     optimum = find_optimum(task, curve)
     if limit < optimum.best.size:
@@ -31,6 +33,7 @@ def find_ranges(task: Task, curve: PerformanceCurve, limit: float) -> tuple[Opti
     def values(beta: np.ndarray) -> np.ndarray:
         return largest(curve.at(beta))
 
+    _refuse_unknown(curve, limit)
     ends = [crossing(values, points, int(k), limit) for k in changes(points, limit)]
     allowed = points.size <= limit
     begins_inside, ends_inside = bool(allowed[0]), bool(allowed[-1])
@@ -41,6 +44,16 @@ def find_ranges(task: Task, curve: PerformanceCurve, limit: float) -> tuple[Opti
     return optimum, np.array(ends[0::2]), np.array(ends[1::2])
 
 
+def _refuse_unknown(curve: PerformanceCurve, limit: float) -> None:
+    """Refuse a limit that all known responses at some friction keep, but perhaps not those of other cells."""
+    for beta, cells in curve.unknown.items():
+        if cells.peak <= limit:
+            raise NoSteadyState(
+                f"cannot answer: {in_words(beta, cells)}, where all others keep the limit; narrow the band "
+                f"or the range of beta, or add damping"
+            )
+
+
 def _last(task: Task, points: Points) -> float:
     """The end of a range that reaches the end of the search: none where everything holds from there on."""
-    return np.inf if points.beta[-1] >= task.stuck_from else float(points.beta[-1])
+    return np.inf if points.beta[-1] >= task.stuck.beta else float(points.beta[-1])

@@ -13,8 +13,8 @@ from ..model.system import System
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales
 
-#: Samples over a band, spaced in proportion.
-PEAK_SAMPLES, LIMIT_SAMPLES = 240, 1000
+#: Samples over a band to find peaks, spaced in proportion.
+PEAK_SAMPLES = 240
 
 #: Places of further samples around a natural frequency, in units of zeta times the frequency.
 _AROUND = np.array([-4.0, -2.0, -1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0, 2.0, 4.0])
@@ -24,9 +24,6 @@ _LEAST_ZETA = 1e-3
 
 #: Largest number of contacts of which every combination is tried.
 _ALL_PATTERNS = 3
-
-#: Divisors of natural frequencies: beta_lim has dips at w/n.
-_MOST_DIVISORS = 60
 
 
 class Band(NamedTuple):
@@ -94,11 +91,3 @@ def peak_samples(system: System, band: Band) -> np.ndarray:
     orders = np.array([1] if system.general is None else system.general.orders, dtype=float)
     resonances = (natural_frequencies(system) / orders[:, np.newaxis]).ravel()
     return band.samples(PEAK_SAMPLES, _clusters(resonances, _zeta(system)))
-
-
-def limit_samples(system: System, band: Band, count: int = LIMIT_SAMPLES) -> np.ndarray:
-    """Frequencies at which boundaries are sampled: beta_lim has dips of relative width zeta at w/n."""
-    natural = natural_frequencies(system)
-    divided = natural[np.newaxis] / np.arange(1.0, _MOST_DIVISORS + 1.0)[:, np.newaxis]
-    inside = divided[(divided > 0.5 * band.low) & (divided < 2.0 * band.high)]
-    return band.samples(count, _clusters(inside, _zeta(system)))

@@ -51,7 +51,7 @@ def brackets_of(x: np.ndarray, values: np.ndarray, rounding: float = 0.0) -> Bra
     return Brackets(x[before], x[place], x[after], values[before], values[place], values[after])
 
 
-def _chosen(bracket: Brackets, which: np.ndarray) -> Brackets:
+def chosen(bracket: Brackets, which: np.ndarray) -> Brackets:
     """Some of the brackets."""
     return Brackets(*(array[which] for array in bracket))
 
@@ -153,12 +153,12 @@ def sharpened(
     for count in range(_ROUNDS):
         which = open_brackets(bracket)
         if count > _SMOOTH_ROUNDS:
-            which = which[~_at_a_jump(_chosen(bracket, which))]
+            which = which[~_at_a_jump(chosen(bracket, which))]
         if group is not None:
             which = which[~_is_outdone(bracket, group)[which]]
         if not which.size:
             break
-        part = _chosen(bracket, which)
+        part = chosen(bracket, which)
         places = _proposals(part) if count < _SMOOTH_ROUNDS else _sections(part)
         values = functions(np.repeat(which, places.shape[1]), places.ravel()).reshape(places.shape)
         narrow = _narrowed(part, places, np.where(np.isnan(values), -np.inf, values))

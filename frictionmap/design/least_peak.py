@@ -1,18 +1,21 @@
 """The friction with the smallest peak response over a band, also where the friction is uncertain."""
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ..errors import InputError, NoSteadyState
 from .extremes import Brackets, brackets_of, sharpened
-from .minimum import Points, alike, local_minima, lowest, lowest_of, plateau_begin
-from .performance import Peaks, PerformanceCurve
+from .limits import starts_matter
+from .minimum import Curve, Points, alike, local_minima, lowest, lowest_of, plateau_begin
+from .performance import Peaks, PerformanceCurve, Unclear
 from .task import Task
 
 #: Local minima of the samples that are refined: those below this multiple of the lowest one.
 _PROMISING = 2.0
+
+#: Kind of an optimum from which on nothing moves.
+THRESHOLD = "threshold"
 
 #: Values of the curve that count as one: of a plateau, of two peaks at the optimum.
 _PLATEAU, TWO_PEAKS = 1e-9, 1e-8
@@ -25,6 +28,11 @@ _AROUND = np.linspace(0.5, 1.5, 21)
 
 #: Rounds in which peaks that were missed are added.
 _AGAIN = 5
+
+#: Whether anything moves where everything holds, and whether nothing does with less friction already, is
+#: looked at with these multiples of the friction that holds.  Motion grows with the square of what is
+#: missing: this much less leaves 1e-10, which is above rounding.
+_ABOVE, _BELOW = 1.01, 1.0 - 1e-5
 
 #: Another minimum is reported up to this multiple of the best one.
 _SECOND = 1.05
@@ -62,6 +70,11 @@ def sampled(task: Task, curve: PerformanceCurve) -> Points:
     """
     beta = task.searched()
     points = Points(beta, largest(curve.whole(beta)))
+    if not points.size.any() and task.low >= curve.stuck.beta > 0.0:
+        raise InputError(
+            f"beta must begin below {curve.stuck.beta:.6g}, from which on the {task.response.words()} is 0 "
+            f"over the whole band; got {task.low:g}"
+        )
     if not points.size.any():
         raise InputError(
             f"response must be one that friction changes; got the {task.response.words()}, which is 0 over "
@@ -82,7 +95,7 @@ def bracket(points: Points, k: int) -> tuple[float, float]:
     return float(points.beta[max(k - 1, 0)]), float(points.beta[min(k + 1, points.beta.size - 1)])
 
 
-def _refined(curve: PerformanceCurve, values: Callable, points: Points, k: int) -> tuple[Minimum, Peaks]:
+def _refined(curve: PerformanceCurve, values: Curve, points: Points, k: int) -> tuple[Minimum, Peaks]:
     """The local minimum next to point k of some, refined until a look at the whole band adds no peak."""
     low, high = bracket(points, k)
     for _ in range(_AGAIN):
@@ -94,13 +107,21 @@ def _refined(curve: PerformanceCurve, values: Callable, points: Points, k: int) 
         curve.forget(low, high)
         (peaks,) = curve.whole(refined.beta[k : k + 1], all_peaks=True)
         points = points.with_more(refined.beta[k : k + 1], np.array([peaks.largest]))
-    _refuse_unknown(curve, low, high)
-    if k + 1 < refined.beta.size and alike(refined.size[[k, _index(refined, high)]], _PLATEAU):
-        beta = plateau_begin(values, refined, k, _PLATEAU)
-        (peaks,) = curve.whole(np.array([beta]), all_peaks=True)
-        return Minimum(beta, peaks.largest, "plateau"), peaks
+    plateau = _plateau(values, refined, k, high)
+    if plateau is not None:
+        (peaks,) = curve.whole(np.array([plateau]), all_peaks=True)
+        if peaks.largest == 0.0:
+            return Minimum(plateau, 0.0, THRESHOLD), _at_rest(plateau)
+        return Minimum(plateau, peaks.largest, "plateau"), peaks
     minimum = Minimum(float(refined.beta[k]), peaks.largest, _kind(refined, k, peaks))
     return minimum, peaks
+
+
+def _plateau(values: Curve, points: Points, k: int, high: float) -> float | None:
+    """Where the plateau begins that reaches from the lowest point k up to `high`; None without one."""
+    if k + 1 < points.beta.size and alike(points.size[[k, _index(points, high)]], _PLATEAU):
+        return plateau_begin(values, points, k, _PLATEAU)
+    return None
 
 
 def _index(points: Points, beta: float) -> int:
@@ -108,15 +129,60 @@ def _index(points: Points, beta: float) -> int:
     return int(np.searchsorted(points.beta, beta))
 
 
-def _refuse_unknown(curve: PerformanceCurve, low: float, high: float) -> None:
-    """Refuse an optimum next to cells that have no known response: theirs may be larger."""
-    near = {beta: count for beta, count in curve.unknown.items() if low <= beta <= high}
-    if near:
-        beta, count = next(iter(near.items()))
-        raise NoSteadyState(
-            f"cannot answer: {count} cells of the band have no periodic steady state at beta = {beta:.6g}, "
-            f"next to the optimum; narrow the band or the range of beta, or add damping"
-        )
+def _refuse_unknown(curve: PerformanceCurve, best: Minimum, low: float, high: float) -> None:
+    """Refuse an optimum with a cell that may be above its peak, or next to friction that may be better.
+
+    Cells that are not known at friction ratios next to it are looked at with the friction of the optimum.
+    """
+    near = {beta: cells for beta, cells in curve.unknown.items() if low <= beta <= high}
+    curve.look_at(best.beta, np.array([cells.r for cells in near.values()]), best.size)
+    own = {best.beta: curve.unknown[best.beta]} if best.beta in curve.unknown else {}
+    better = {beta: cells for beta, cells in near.items() if cells.peak < best.size}
+    for beta, cells in (own | better).items():
+        _refuse(beta, cells, best)
+
+
+def _refuse(beta: float, cells: Unclear, best: Minimum) -> None:
+    raise NoSteadyState(
+        f"cannot answer: {in_words(beta, cells)}, next to the optimum with the peak {best.size:.6g}; narrow "
+        f"the band or the range of beta, or add damping"
+    )
+
+
+def in_words(beta: float, cells: Unclear) -> str:
+    """Cells at a friction ratio without a periodic steady state, in words."""
+    counted = "1 cell of the band has" if cells.number == 1 else f"{cells.number} cells of the band have"
+    found = f"{counted} no periodic steady state at beta = {beta:.6g}"
+    if np.isnan(cells.seen):
+        return f"{found} (r = {cells.r:.6g})"
+    return f"{found} (r = {cells.r:.6g}: largest response seen {cells.seen:.6g})"
+
+
+def irregular_cells(curve: PerformanceCurve, beta: float) -> str:
+    """The irregular cells next to a friction ratio that were left out, in words; empty without any."""
+    if not curve.harmless:
+        return ""
+    nearest = min(curve.harmless, key=lambda known: abs(known - beta))
+    count = len(curve.harmless) - 1
+    others = f", as are those at {count} other friction ratios" if count else ""
+    return f"{in_words(nearest, curve.harmless[nearest])}: far below the peak, left out{others}"
+
+
+def _threshold(task: Task, curve: PerformanceCurve, share: float = 1.0) -> tuple[Minimum, Peaks] | None:
+    """The friction from which the response is 0 over the whole band, over a share of it; None without one."""
+    beta = curve.stuck.beta / share
+    if not task.low < beta <= task.high:
+        return None
+    below, held = curve.whole(curve.stuck.beta * np.array([_BELOW, _ABOVE]))
+    at_rest_before = below.largest == 0.0 and not starts_matter(task.system, task.mu)
+    if held.largest > 0.0 or at_rest_before:
+        return None
+    return Minimum(beta, 0.0, THRESHOLD), _at_rest(beta, curve.stuck.r)
+
+
+def _at_rest(beta: float, r: float = np.nan) -> Peaks:
+    """What stands for peaks where there are none; r, the frequency that decides, if it is known."""
+    return Peaks(beta, np.array([r]), np.zeros(1))
 
 
 def find_optimum(task: Task, curve: PerformanceCurve) -> Optimum:
@@ -132,16 +198,26 @@ def find_optimum(task: Task, curve: PerformanceCurve) -> Optimum:
     def values(beta: np.ndarray) -> np.ndarray:
         return largest(curve.at(beta))
 
+    threshold = _threshold(task, curve)
+    if threshold is not None:
+        return _optimum(curve, points, *threshold)
     promising = [k for k in local_minima(points) if points.size[k] <= _PROMISING * points.size.min()]
-    found = [_refined(curve, values, points, k) for k in promising]
+    found = [(*_refined(curve, values, points, k), bracket(points, k)) for k in promising]
     found.sort(key=lambda one: one[0].size)
-    best, peaks = found[0]
+    best, peaks, around = found[0]
+    _refuse_unknown(curve, best, *around)
+    others = [one for one, _, _ in found[1:] if one.size <= _SECOND * best.size]
+    return _optimum(curve, points, best, peaks, others[0] if others else None)
+
+
+def _optimum(
+    curve: PerformanceCurve, points: Points, best: Minimum, peaks: Peaks, second: Minimum | None = None
+) -> Optimum:
+    """The optimum, with the curve around it."""
     around = best.beta * _AROUND
     curve.at(around[(around >= points.beta[0]) & (around <= points.beta[-1])])
-    others = [one for one, _ in found[1:] if one.size <= _SECOND * best.size]
     table = curve.table
-    refined = Points(np.array([one.beta for one in table]), largest(table))
-    return Optimum(best, peaks, others[0] if others else None, refined)
+    return Optimum(best, peaks, second, Points(np.array([one.beta for one in table]), largest(table)))
 
 
 def _inner_maxima(curve: PerformanceCurve, points: Points) -> tuple[np.ndarray, np.ndarray]:
@@ -176,16 +252,27 @@ def find_robust(task: Task, curve: PerformanceCurve, spread: float) -> Optimum:
     if beta.size < 3:
         raise InputError(f"spread must leave a range of friction to search; got {spread:g}")
     robust = Points(beta, worst(beta))
-    best: Minimum | None = None
-    for k in local_minima(robust):
-        low, high = bracket(robust, k)
-        refined = lowest(worst, robust, low, high)
-        j = lowest_of(refined, low, high)
-        kind = "at the bound" if j in (0, refined.beta.size - 1) else "smooth"
-        one = Minimum(float(refined.beta[j]), float(refined.size[j]), kind)
-        best = one if best is None or one.size < best.size else best
-    assert best is not None
+    threshold = _threshold(task, curve, 1.0 - spread)
+    if threshold is not None:
+        return _optimum(curve, points, *threshold)
+    best = min((_refined_robust(worst, robust, k) for k in local_minima(robust)), key=lambda one: one.size)
+    for level, cells in curve.unknown.items():
+        if best.beta * (1.0 - spread) <= level <= best.beta * (1.0 + spread):
+            _refuse(level, cells, best)
+    if best.kind == THRESHOLD:
+        return _optimum(curve, points, best, _at_rest(best.beta))
     ends = curve.whole(best.beta * np.array([1.0 - spread, 1.0 + spread]), all_peaks=True)
-    table = curve.table
-    refined = Points(np.array([one.beta for one in table]), largest(table))
-    return Optimum(best, max(ends, key=lambda one: one.largest), None, refined)
+    return _optimum(curve, points, best, max(ends, key=lambda one: one.largest))
+
+
+def _refined_robust(worst: Curve, robust: Points, k: int) -> Minimum:
+    """The local minimum next to point k of the worst response within a spread."""
+    low, high = bracket(robust, k)
+    refined = lowest(worst, robust, low, high)
+    k = lowest_of(refined, low, high)
+    plateau = _plateau(worst, refined, k, high)
+    if plateau is not None:
+        size = float(refined.size[k])
+        return Minimum(plateau, size, "plateau" if size > 0.0 else THRESHOLD)
+    kind = "at the bound" if k in (0, refined.beta.size - 1) else "smooth"
+    return Minimum(float(refined.beta[k]), float(refined.size[k]), kind)

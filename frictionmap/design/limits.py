@@ -1,43 +1,84 @@
-"""Boundaries over a band: their least and largest values, and where they cross a friction ratio."""
+"""Boundaries of the regimes over a band of frequencies: their least and largest values."""
 
-from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 from ..errors import InputError
 from ..general.boundaries import find_boundaries
-from ..general.held import least_static_friction, stick_scales
+from ..general.held import least_static_friction, rest_scales, stick_scales
 from ..model.system import System
 from ..theory.boundary_curves import find_curves
-from .band import Band, limit_samples
-from .extremes import brackets_of, sharpened
-from .minimum import Points, changes, crossing
+from .band import Band
+from .extremes import Brackets, brackets_of, chosen, joined, sharpened
+from .grading import FINE, FOLLOWED, graded, no_stop_poles, stick_poles
+from .minimum import Points
 from .watching import current_watch, look
-
-#: A boundary of a system at frequencies (n_r,) for one mu.
-Limit = Callable[[System, np.ndarray, float], np.ndarray]
-
-#: Samples of beta_lim over a band where each is found by following motions.
-_FOLLOWED_SAMPLES = 60
 
 #: A maximum that falls to less than half within this relative distance is a pole: no damping is so small.
 _POLE = 1e-9
 
-#: The crossings next to a working point are looked for from this part of its frequency to the multiple.
-_REACH = 10.0
+#: beta_lim below this share of its largest value is 0: the frequency of a pole without damping is rounded.
+_LOST = 4.0 * float(np.finfo(float).eps)
+
+#: A local extremum may be above its sample by so many times the step to the lower neighbour of that: by an
+#: eighth if the curve is smooth, by a half at a kink between two lines, by 1.4 at the tip of a square root.
+_RISE = 2.0
 
 
-def stick_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
-    """Friction ratio from which all contacts hold, (n_r,): beta_stick, or beta_noslip of elastic contacts."""
+class Extreme(NamedTuple):
+    """The least or largest value of a boundary over a band, and the frequency at which it is."""
+
+    beta: float
+    r: float
+
+
+def stick_samples(system: System, band: Band) -> np.ndarray:
+    """Frequencies that show all of a boundary to sticking over a band."""
+    return graded(band, stick_poles(system), FINE)
+
+
+def no_stop_samples(system: System, band: Band) -> np.ndarray:
+    """Frequencies that show all of beta_lim over a band."""
+    return graded(band, no_stop_poles(system, band.low), FINE if system.general is None else FOLLOWED)
+
+
+def boundary_samples(system: System, band: Band) -> np.ndarray:
+    """Frequencies that show all boundaries of a system over a band."""
+    if not has_no_stop_limit(system):
+        return stick_samples(system, band)
+    poles = np.concatenate((no_stop_poles(system, band.low), stick_poles(system)))
+    return graded(band, poles, FINE if system.general is None else FOLLOWED)
+
+
+def needed_friction(system: System, r: np.ndarray) -> np.ndarray:
+    """Friction with which each contact holds, over P, (n_r, N): half the range of its force."""
     look()
     if system.general is None:
-        return find_curves(system, r, np.array([mu])).beta_stick[0]
-    needed = least_static_friction(system, r)
-    return stick_scales(system.general, needed, np.array([mu])).max(axis=2)[0]
+        return find_curves(system, r, np.array([1.0])).beta_stick[0][:, np.newaxis]
+    return least_static_friction(system, r)
+
+
+def _scales(system: System, needed: np.ndarray, mu: float | None) -> np.ndarray:
+    """Friction ratio at which each contact has the friction it needs, (n_r, N); mu as in `stick_limit`."""
+    if system.general is None:
+        return needed / (1.0 if mu is None else mu)
+    if mu is None:
+        return rest_scales(system.general, needed)
+    return stick_scales(system.general, needed, np.array([mu]))[0]
+
+
+def stick_limit(system: System, r: np.ndarray, mu: float | None) -> np.ndarray:
+    """Friction ratio from which all contacts hold, (n_r,): beta_stick, or beta_noslip of elastic contacts.
+
+    With static friction, of ratio mu, contacts that are at rest stay so.  With mu None kinetic friction
+    alone is enough: every motion comes to rest (theory.md 6).
+    """
+    return _scales(system, needed_friction(system, r), mu).max(axis=1)
 
 
 def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
-    """Friction ratio up to which no contact stops, (n_r,): beta_lim.
+    """Friction ratio up to which a motion without stops exists, (n_r,): beta_lim.
 
     Raises
     ------
@@ -60,52 +101,61 @@ def has_no_stop_limit(system: System) -> bool:
     return system.general is None or not system.general.elastic.any()
 
 
-def boundary_samples(system: System, band: Band) -> np.ndarray:
-    """Frequencies at which beta_lim is sampled: closed forms cost little."""
+def starts_matter(system: System, mu: float) -> bool:
+    """Whether a cell may have several steady states: static friction exceeds kinetic friction somewhere."""
     if system.general is None:
-        return limit_samples(system, band)
-    return band.samples(_FOLLOWED_SAMPLES, np.empty(0))
+        return mu > 1.0
+    return not system.general.has_equal_friction(mu)
 
 
-def least_no_stop(system: System, band: Band, mu: float) -> tuple[float, float]:
-    """The most friction without a stop anywhere in a band, and the frequency that decides."""
-    r = boundary_samples(system, band)
-    bracket = brackets_of(r, -no_stop_limit(system, r, mu))
-    low = bracket.at_m >= 2.0 * bracket.at_m.max()  # values are negative: other dips are far above
-    bracket = type(bracket)(*(array[low] for array in bracket))
-    together = np.zeros(bracket.m.size, int)  # the lowest of all is wanted
-    places, values = sharpened(lambda _, x: -no_stop_limit(system, x, mu), bracket, together)
-    best = int(np.argmax(values))
-    return float(-values[best]), float(places[best])
+def may_reach(bracket: Brackets, level: float) -> Brackets:
+    """The maxima that may be at a level or above it, see `_RISE`."""
+    with np.errstate(invalid="ignore"):  # infinite less infinite: it is above every level
+        rise = bracket.at_m - np.minimum(bracket.at_a, bracket.at_b)
+        below = bracket.at_m + _RISE * rise < level
+    return chosen(bracket, np.flatnonzero(~below))
 
 
-def largest_stick(system: System, band: Band, mu: float) -> tuple[float, float]:
-    """The least friction that holds over a band, and the frequency that decides; infinite at a pole."""
-    r = limit_samples(system, band)
-    values = stick_limit(system, r, mu)
-    if np.isinf(values).any():
-        return np.inf, float(r[np.argmax(values)])
-    bracket = brackets_of(r, values)
-    places, values = sharpened(lambda _, x: stick_limit(system, x, mu), bracket)
-    best = int(np.argmax(values))
-    place, value = float(places[best]), float(values[best])
-    if band.low < place < band.high:
-        beside = stick_limit(system, place * np.array([1.0 - _POLE, 1.0 + _POLE]), mu)
-        if beside.max() < 0.5 * value:
-            return np.inf, place
-    return value, place
+def least_no_stop(system: System, band: Band, mu: float) -> tuple[Extreme, Points]:
+    """The least beta_lim over a band, and the samples of it."""
+
+    def negative(_: np.ndarray, r: np.ndarray) -> np.ndarray:
+        return -no_stop_limit(system, r, mu)
+
+    r = no_stop_samples(system, band)
+    points = Points(r, no_stop_limit(system, r, mu))
+    dips = brackets_of(r, -points.size)
+    order = np.argsort(-dips.at_m, kind="stable")
+    place, value = sharpened(negative, chosen(dips, order[:1]))
+    others = may_reach(chosen(dips, order[1:]), float(value[0]))
+    if others.m.size:
+        places, values = sharpened(negative, others)
+        place, value = np.append(place, places), np.append(value, values)
+    best = int(np.argmax(value))
+    beta, most = float(-value[best]), points.size[np.isfinite(points.size)].max(initial=0.0)
+    return Extreme(beta if beta > _LOST * most else 0.0, float(place[best])), points
 
 
-def nearest_crossing(limit: Limit, system: System, r: float, beta: float, mu: float) -> float:
-    """The frequency next to r, within a factor of ten, at which a boundary is beta; NaN without one."""
-    reach = Band(r / _REACH, r * _REACH)
-    samples = np.union1d(boundary_samples(system, reach), [r])
+def largest_stick(system: System, band: Band, mu: float | None) -> Extreme:
+    """The largest friction ratio of `stick_limit` over a band; infinite at a pole."""
+    r = stick_samples(system, band)
+    needed = needed_friction(system, r)
+    count = needed.shape[1]
+    if np.isinf(needed).any():
+        return Extreme(np.inf, float(r[np.argmax(needed.max(axis=1))]))
+    peaks = [brackets_of(r, one) for one in needed.T]
+    contact = np.repeat(np.arange(count), [one.m.size for one in peaks])
 
-    def boundary(x: np.ndarray) -> np.ndarray:
-        return limit(system, x, mu)
+    def of_contacts(which: np.ndarray, r: np.ndarray) -> np.ndarray:
+        return needed_friction(system, r)[np.arange(r.size), contact[which]]
 
-    points = Points(samples, boundary(samples))
-    found = changes(points, beta)
-    beside = [*found[samples[found] < r][-1:], *found[samples[found] >= r][:1]]
-    places = [crossing(boundary, points, int(k), beta) for k in beside]
-    return min(places, key=lambda place: abs(place - r), default=np.nan)
+    places, values = sharpened(of_contacts, joined(peaks))
+    best = [np.flatnonzero(contact == j)[np.argmax(values[contact == j])] for j in range(count)]
+    most, at = values[best], places[best]
+    inside = (at > band.low) & (at < band.high)
+    for sign in (-1.0, 1.0):
+        beside = of_contacts(np.array(best), at * (1.0 + sign * _POLE))
+        inside &= beside < 0.5 * most
+    scales = _scales(system, np.where(inside, np.inf, most)[np.newaxis], mu)[0]
+    j = int(np.argmax(scales))
+    return Extreme(float(scales[j]), float(at[j]))

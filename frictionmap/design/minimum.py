@@ -21,6 +21,9 @@ _SMOOTH, _PLACE, _KINK = 1e-8, 1e-5, 1e-12
 #: Least width of a bracket, relative to its place.
 _NARROW = 1e-14
 
+#: The least positive number: everything that is not 0 is above it or equal.
+_LEAST = float(np.finfo(float).tiny)
+
 #: M(beta) at increasing beta.
 Curve = Callable[[np.ndarray], np.ndarray]
 
@@ -128,7 +131,9 @@ def crossing(curve: Curve, points: Points, k: int, limit: float) -> float:
 
 def plateau_begin(curve: Curve, points: Points, k: int, alike: float) -> float:
     """Least beta from which a curve is as low as at its k-th point, to the relative difference `alike`."""
-    limit = points.size[k] * (1.0 + alike)
+    limit = max(
+        points.size[k] * (1.0 + alike), _LEAST
+    )  # a plateau of zeros begins where the last motion ends
     higher = np.flatnonzero(points.size[:k] > limit)
     if not higher.size:
         return float(points.beta[0])

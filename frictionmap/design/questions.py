@@ -16,19 +16,30 @@ from .answers import answer
 from .at_most import find_ranges
 from .band import Band, checked_band, peak_samples
 from .force_plane import checked_plane, find_in_plane
-from .least_peak import TWO_PEAKS, Minimum, Optimum, find_optimum, find_robust, largest
+from .least_peak import (
+    THRESHOLD,
+    TWO_PEAKS,
+    Minimum,
+    Optimum,
+    find_optimum,
+    find_robust,
+    irregular_cells,
+    largest,
+)
 from .limits import (
     boundary_samples,
     has_no_stop_limit,
     largest_stick,
-    least_no_stop,
-    nearest_crossing,
     no_stop_limit,
+    starts_matter,
     stick_limit,
 )
+from .minimum import Points
+from .nearest import around, nearest, no_stop_at, stick_at
 from .performance import PerformanceCurve
 from .responses import Responses
 from .samples import SampledPerformance, Samples, sample_values, sampled
+from .stops import least_with_stops
 from .task import Task, checked_task
 
 #: Relative changes of the friction at which the response is given beside the answer.
@@ -76,8 +87,8 @@ def least_peak(
     contact : int
         Contact of quantity "contact", counted from 1.
     beta : array_like, shape (2,), optional
-        Range of friction ratios F/P to search; default: from 0 to 1.25 times the largest beta_stick of the
-        band.  Without damping it begins where all peaks in the band are finite.
+        Range of friction ratios F/P to search; default: from 0 to 1.25 times the friction that holds over the
+        band, further with a spread.  Without damping it begins where all peaks in the band are finite.
     threads : int, optional
         Number of threads; default: all processors of the process.  The result does not depend on it.
     units : Units, optional
@@ -88,18 +99,22 @@ def least_peak(
     xarray.Dataset
         `beta`, the friction ratio; on `peak` the largest responses over frequency there, from the highest
         down (equal ones by frequency), with `peak_r`, `peak_regime` and `peak_stops`; `kind` of the optimum;
+        of a "threshold", from which on nothing moves, the peak is 0, and `at_r`, the frequency that decides,
+        takes the place of these;
         `second_beta` and
         `second_peak` of another minimum within 5 %; `peak_at_offset`, the response with 2 % and 20 % more and
         less friction; `peak_of_beta` on `beta_search`, the performance curve; `beta_no_stop` and
-        `beta_stuck` of the band; `response_of_r` (curve, r_search), response curves.  With units also
-        `friction_force` [N], `peak_frequency` [Hz] and `peak_m` [m].
+        `beta_stuck` of the band, with mu > 1 also `beta_no_stop_some_starts` and `beta_stuck_some_starts`;
+        `response_of_r` (curve, r_search), response curves.  With units also `friction_force` [N],
+        `peak_frequency` [Hz] and `peak_m` [m].  Attribute `warnings`: irregular motions that were left out.
 
     Raises
     ------
     InputError
         An argument has the wrong type or is out of range, or nothing moves in the band.
     NoSteadyState
-        Cells of the band have no periodic steady state: the largest response may be among them.
+        Cells of the band have no periodic steady state, and the largest response may be among them: an
+        irregular motion of which three quarters of the peak or more were seen, or none that was found.
 
     Examples
     --------
@@ -113,7 +128,8 @@ def least_peak(
     """
     if not isinstance(spread, Samples):
         spread = _checked_spread(spread)
-    task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units)
+    wide = 0.0 if isinstance(spread, Samples) else spread
+    task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units, wide)
     if isinstance(spread, Samples):
         return _answer_for_samples(task, spread, widen=beta is None)
     curve = task.performance()
@@ -252,7 +268,10 @@ def at_most(
 
 
 def no_stop(system: System, band: Any, mu: float = 1.0, *, units: Units | None = None) -> xr.Dataset:
-    """Find the most friction without a stop anywhere in a band: the least beta_lim, theory.md 3.
+    """Find the most friction without a stop anywhere in a band: with mu = 1 the least beta_lim, theory.md 3.
+
+    With mu > 1 motions are followed from many initial states, in which a contact is about to slip at any
+    phase of the load: none of them goes on stopping.  That is no proof that no other one does.
 
     Parameters
     ----------
@@ -263,11 +282,13 @@ def no_stop(system: System, band: Any, mu: float = 1.0, *, units: Units | None =
     -------
     xarray.Dataset
         `beta`, and `at_r`, the frequency that decides; `beta_lim_of_r` and `beta_stick_of_r` on `r_search`.
+        With mu > 1 also `beta_no_stop_some_starts`, the least beta_lim: up to there motions without stops
+        exist.
 
     Raises
     ------
     InputError
-        An argument has the wrong type or is out of range, or all contacts have springs.
+        An argument has the wrong type or is out of range, or a contact has a spring.
 
     Examples
     --------
@@ -277,13 +298,18 @@ def no_stop(system: System, band: Any, mu: float = 1.0, *, units: Units | None =
     (0.005620882, 0.333310347)
     """
     checked, scales = _checked(system, band, mu, units)
-    beta, r = least_no_stop(system, checked, mu)
-    found = {"beta": beta, "at_r": r, "mu": mu, **_boundaries(system, checked, mu)}
+    every, some, points = least_with_stops(system, checked, mu)
+    found = {"beta": every.beta, "at_r": every.r, "mu": mu, **_boundaries(system, mu, points)}
+    if starts_matter(system, mu):
+        found["beta_no_stop_some_starts"] = some.beta
     return answer("no-stop", system, checked, found, {"mu": mu}, units, scales)
 
 
 def stuck(system: System, band: Any, mu: float = 1.0, *, units: Units | None = None) -> xr.Dataset:
     """Find the least friction that holds over a band: the largest beta_stick, or beta_noslip, theory.md 4.
+
+    With mu > 1 it holds whatever the initial state: mu beta_stick, with which kinetic friction is enough and
+    every motion comes to rest, theory.md 6.
 
     Parameters
     ----------
@@ -294,7 +320,9 @@ def stuck(system: System, band: Any, mu: float = 1.0, *, units: Units | None = N
     -------
     xarray.Dataset
         `beta`, infinite where a structure that is held resonates without damping, and `at_r`, the frequency
-        that decides; `beta_lim_of_r` and `beta_stick_of_r` on `r_search`.
+        that decides; `beta_lim_of_r` and `beta_stick_of_r` on `r_search`.  With mu > 1 also
+        `beta_stuck_some_starts`, the largest beta_stick, with which contacts that are stuck stay so (one
+        mass: from rest), and `beta_stuck_of_r`.
 
     Raises
     ------
@@ -308,8 +336,10 @@ def stuck(system: System, band: Any, mu: float = 1.0, *, units: Units | None = N
     2.25
     """
     checked, scales = _checked(system, band, mu, units)
-    beta, r = largest_stick(system, checked, mu)
-    found = {"beta": beta, "at_r": r, "mu": mu, **_boundaries(system, checked, mu)}
+    beta, r = largest_stick(system, checked, None)
+    found = {"beta": beta, "at_r": r, "mu": mu, **_boundaries_over(system, checked, mu)}
+    if starts_matter(system, mu):
+        found["beta_stuck_some_starts"] = largest_stick(system, checked, mu).beta
     return answer("stuck", system, checked, found, {"mu": mu}, units, scales)
 
 
@@ -331,7 +361,7 @@ def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units |
         `beta_lim` and `beta_stick` at r, `margin_beta_lim` and `margin_beta_stick`: how much they are above
         beta, relative to beta; `nearest_r_on_beta_lim` and `nearest_r_on_beta_stick`, the nearest frequencies
         within a factor of ten at which a boundary is beta (NaN: none), `margin_r` and `margin_r_stick`: how
-        far they are, relative to r.
+        far they are, relative to r.  With mu > 1 the boundaries are those of some initial states.
 
     Raises
     ------
@@ -351,17 +381,19 @@ def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units |
     beta = checks.number(_single(beta, "beta", KINDS["beta"], scales), "beta", above=0.0)
     mu = checks.number(mu, "mu", least=1.0)
     found: dict[str, Any] = {"at_r": r, "beta": beta, "mu": mu}
-    limits = {"beta_stick": (stick_limit, "margin_r_stick")}
+    limits: dict[str, tuple] = {"beta_stick": (stick_limit, stick_at, "margin_r_stick")}
     if has_no_stop_limit(system):
-        limits["beta_lim"] = no_stop_limit, "margin_r"
-    for name, (limit, margin_r) in limits.items():
-        value = float(limit(system, np.array([r]), mu)[0])
-        nearest = nearest_crossing(limit, system, r, beta, mu)
+        limits["beta_lim"] = no_stop_limit, no_stop_at, "margin_r"
+    low = 0.5 * r
+    for name, (limit, at, margin_r) in limits.items():
+        value, line = float(limit(system, np.array([r]), mu)[0]), at(system, beta, mu)
+        place = nearest(line, r)
+        low = max(low, around(line, r).low)
         found |= {name: value, f"margin_{name}": value / beta - 1.0}
-        found |= {f"nearest_r_on_{name}": nearest, margin_r: nearest / r - 1.0}
-    around = Band(r / 2.0, 2.0 * r)
-    found |= _boundaries(system, around, mu)
-    return answer("margin", system, around, found, {"r": r, "beta": beta, "mu": mu}, units, scales)
+        found |= {f"nearest_r_on_{name}": place, margin_r: place / r - 1.0}
+    shown = Band(low, 2.0 * r)
+    found |= _boundaries_over(system, shown, mu)
+    return answer("margin", system, shown, found, {"r": r, "beta": beta, "mu": mu}, units, scales)
 
 
 def _single(given: Any, name: str, kind: str, scales: Scales) -> Any:
@@ -385,12 +417,22 @@ def _checked(system: Any, band: Any, mu: Any, units: Units | None) -> tuple[Band
     return checked_band(band, scales), scales
 
 
-def _boundaries(system: System, band: Band, mu: float) -> dict[str, np.ndarray]:
+def _boundaries_over(system: System, band: Band, mu: float) -> dict[str, np.ndarray]:
     """The boundaries over a band, for pictures."""
     r = boundary_samples(system, band)
+    if not has_no_stop_limit(system):
+        return _boundaries(system, mu, Points(r, np.empty(0)))
+    return _boundaries(system, mu, Points(r, no_stop_limit(system, r, mu)))
+
+
+def _boundaries(system: System, mu: float, no_stop: Points) -> dict[str, np.ndarray]:
+    """The boundaries at the frequencies at which beta_lim is known, if the system has one, for pictures."""
+    r = no_stop.beta
     found = {"r_search": r, "beta_stick_of_r": stick_limit(system, r, mu)}
-    if has_no_stop_limit(system):
-        found["beta_lim_of_r"] = no_stop_limit(system, r, mu)
+    if no_stop.size.size:
+        found["beta_lim_of_r"] = no_stop.size
+    if starts_matter(system, mu):
+        found["beta_stuck_of_r"] = stick_limit(system, r, None)
     return found
 
 
@@ -400,26 +442,34 @@ def _answer(
     study: Mapping[str, Any] | None = None,
 ) -> xr.Dataset:  # fmt: skip
     """Build the dataset of a question about the largest response."""
-    best, peaks = optimum.best, optimum.peaks
-    listed = peaks.above(_LISTED * peaks.largest).by_frequency(TWO_PEAKS)
-    states = curve.states(listed)
+    best = optimum.best
     second = optimum.second or Minimum(np.nan, np.nan, "")
     points = optimum.points
+    unknown = [curve.unknown[beta].number if beta in curve.unknown else 0 for beta in points.beta.tolist()]
     found = {
-        "beta": best.beta, "mu": task.mu, "kind": best.kind, "peak": listed.size, "peak_r": listed.r,
-        "peak_regime": states.regime, "peak_stops": states.stops,
+        "beta": best.beta, "mu": task.mu, "kind": best.kind, **_peaks(curve, optimum, "spread" in asked),
         "second_beta": second.beta, "second_peak": second.size,
         "beta_search": points.beta, "peak_of_beta": points.size,
-        "unknown_of_beta": [curve.unknown.get(beta, 0) for beta in points.beta.tolist()],
+        "unknown_of_beta": unknown,
         "offset": _OFFSETS, "peak_at_offset": largest(curve.whole(best.beta * (1.0 + _OFFSETS))),
-        "beta_no_stop": task.no_stop_up_to, "beta_stuck": task.stuck_from,
-        **_response_curves(task, best.beta), **(further or {}),
+        **({} if study else task.limits()), **(further or {}), **_response_curves(task, best.beta),
         **{name: value for name, value in asked.items() if name in DESIGN},
     }  # fmt: skip
-    if "spread" in asked:
-        found["peak"] = np.concatenate(([best.size], listed.size[1:]))
     keys = {"response": task.response.asked(), "mu": task.mu, "beta": [task.low, task.high], **asked}
-    return answer(question, task.system, task.band, found, keys, task.units, task.scales, study)
+    ds = answer(question, task.system, task.band, found, keys, task.units, task.scales, study)
+    caution = irregular_cells(curve, best.beta)
+    return ds.assign_attrs(warnings=caution) if caution else ds
+
+
+def _peaks(curve: PerformanceCurve, optimum: Optimum, of_spread: bool) -> dict[str, Any]:
+    """The peaks of an answer, the largest one first: with a spread the worst in it.  A threshold has none."""
+    best, peaks = optimum.best, optimum.peaks
+    if best.kind == THRESHOLD:
+        return {"peak": [0.0], "at_r": peaks.r[0]}
+    listed = peaks.above(_LISTED * peaks.largest).by_frequency(TWO_PEAKS)
+    states = curve.states(listed)
+    size = np.concatenate(([best.size], listed.size[1:])) if of_spread else listed.size
+    return {"peak": size, "peak_r": listed.r, "peak_regime": states.regime, "peak_stops": states.stops}
 
 
 def _answer_for_samples(task: Task, samples: Samples, *, widen: bool) -> xr.Dataset:
@@ -439,7 +489,7 @@ def _response_curves(task: Task, beta: float) -> dict[str, np.ndarray]:
     r = peak_samples(task.system, task.band)
     levels = np.unique(np.concatenate(([0.0] if task.may_be_without_friction else [], beta * _CURVES)))
     sizes = responses.on_grid(r, levels).size.T
-    if np.isfinite(task.stuck_from):
-        sizes = np.vstack((sizes, responses.on_grid(r, np.array([1.01 * task.stuck_from])).size.T))
+    if np.isfinite(task.stuck.beta):
+        sizes = np.vstack((sizes, responses.on_grid(r, np.array([1.01 * task.stuck.beta])).size.T))
         levels = np.append(levels, np.inf)
     return {"curve": levels, "r_search": r, "response_of_r": sizes}

@@ -1,6 +1,8 @@
 """The response that a design is about, at points (r, beta), of any system."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -9,12 +11,13 @@ from .. import checks, regimes
 from ..errors import InputError
 from ..general.dataset import cell_values, contact_values, refuse_static
 from ..general.maps import solve_cells
+from ..model.general import contacts_of
 from ..model.settings import Output, Solver, Start
 from ..model.system import System
 from ..steady.maps import compute
 from ..steady.quantity_data import quantity_request, read_result
 from ..steady.scattered import scattered_cells
-from .limits import stick_limit
+from .limits import starts_matter, stick_limit
 from .watching import current_watch, look
 
 #: What is made small: the largest displacement of a mass, its first harmonic, the largest displacement in a
@@ -61,7 +64,7 @@ class Values(NamedTuple):
     size: np.ndarray  # the response; NaN where no steady state was found
     regime: np.ndarray
     stops: np.ndarray  # per cycle, the most of all contacts
-    status: np.ndarray
+    irregular: np.ndarray  # the largest response seen of an irregular motion; 0 where there is none
 
 
 def checked_response(system: System, quantity: object, mass: object, contact: object) -> Response:
@@ -95,14 +98,8 @@ class Responses:
             self._request = quantity_request((_OF_CYCLE[response.quantity],))
         if system.general is not None:
             refuse_static(system.general, np.array([mu]))
-        starts: Sequence[Start] = ("rest",) if self._unique else ("rest", "moving")
+        starts: Sequence[Start] = ("rest", "moving") if starts_matter(system, mu) else ("rest",)
         self._solvers = [Solver(start=start, outputs=outputs) for start in starts]
-
-    @property
-    def _unique(self) -> bool:
-        """Whether every cell has one steady state."""
-        general = self.system.general
-        return self.mu == 1.0 if general is None else general.has_equal_friction(self.mu)
 
     def on_grid(self, r: np.ndarray, beta: np.ndarray) -> Values:
         """Values on a grid, (n_r, n_beta); r > 0 and beta >= 0 increase."""
@@ -114,7 +111,8 @@ class Responses:
             cells, out = compute(
                 self.system, axes, solver, self._request, self._threads, None, current_watch()
             )
-            parts.append(self._read(cells, out, (0,)))
+            rows, columns = np.broadcast_arrays(r[:, np.newaxis], beta)
+            parts.append(self._with_seen(self._read(cells, out, (0,)), rows, columns, solver))
         return _largest(parts)
 
     def at(self, r: np.ndarray, beta: np.ndarray) -> Values:
@@ -133,7 +131,8 @@ class Responses:
         parts = []
         for solver in self._solvers:
             found = scattered_cells(self.system, r[order], beta[order], self.mu, solver, self._request)
-            parts.append(self._read(found.cells, found.out, (0, np.arange(r.size), found.column)))
+            read = self._read(found.cells, found.out, (0, np.arange(r.size), found.column))
+            parts.append(self._with_seen(read, r[order], beta[order], solver))
         values = _largest(parts)
         back = np.argsort(order, kind="stable")
         return Values(*(array[back] for array in values))
@@ -147,7 +146,24 @@ class Responses:
             size = getattr(out, _OUTPUTS[quantity])
         if size.ndim == 4:
             size = size[..., self._row]
-        return Values(size[place], out.regime[place], out.stops_per_cycle[place], out.status[place])
+        return _values(size[place], out.regime[place], out.stops_per_cycle[place], out.status[place])
+
+    @cached_property
+    def _twin(self) -> "Responses":
+        """The same of the engine for any number of contacts."""
+        system = replace(self.system, contacts=contacts_of(self.system))
+        return Responses(system, self.response, self.mu, self._threads)
+
+    def _with_seen(self, values: Values, r: np.ndarray, beta: np.ndarray, solver: Solver) -> Values:
+        """Values with the largest amplitude seen of irregular motions, of which masses have none so far."""
+        which = np.isnan(values.irregular) & (self.response.quantity == "amplitude")
+        if not which.any():
+            return values
+        axes = {"mu": np.array([self.mu]), "r": r[which], "beta": beta[which][:, np.newaxis]}
+        seen = self._twin._general(axes, solver).size[:, 0]
+        size, irregular = values.size.copy(), values.irregular.copy()
+        size[which] = irregular[which] = seen
+        return values._replace(size=size, irregular=irregular)
 
     def _general(self, axes: dict[str, np.ndarray], solver: Solver) -> Values:
         stick = stick_limit(self.system, axes["r"], self.mu)[np.newaxis]
@@ -159,7 +175,7 @@ class Responses:
         else:
             size = contact_values("contact_amplitude", self.system, found)[0, ..., self.response.contact - 1]
         stops = np.where(np.isnan(found.stops[0]), 0.0, found.stops[0]).max(axis=-1)
-        return Values(size, found.regime[0], stops, found.status[0])
+        return _values(size, found.regime[0], stops, found.status[0])
 
     def _general_at(self, r: np.ndarray, beta: np.ndarray) -> Values:
         """Points as rows of a grid with a beta of their own."""
@@ -173,6 +189,11 @@ class Responses:
         return _largest([self._general(axes, solver) for solver in self._solvers])
 
 
+def _values(size: np.ndarray, regime: np.ndarray, stops: np.ndarray, status: np.ndarray) -> Values:
+    """Values of one start."""
+    return Values(size, regime, stops, np.where(status == regimes.IRREGULAR, size, 0.0))
+
+
 def _largest(parts: list[Values]) -> Values:
     """The state with the largest response of several at each point; NaN where one was not found."""
     if len(parts) == 1:
@@ -180,8 +201,8 @@ def _largest(parts: list[Values]) -> Values:
     sizes = np.stack([part.size for part in parts])
     missing = np.isnan(sizes)
     which = np.argmax(np.where(missing, np.inf, sizes), axis=0)
-    chosen = [np.choose(which, [part[k] for part in parts]) for k in range(len(Values._fields))]
-    return Values(*chosen)
+    size, regime, stops = (np.choose(which, [part[k] for part in parts]) for k in range(3))
+    return Values(size, regime, stops, np.max([part.irregular for part in parts], axis=0))
 
 
 def joined_values(parts: list[Values]) -> Values:
@@ -190,5 +211,5 @@ def joined_values(parts: list[Values]) -> Values:
 
 
 def unresolved(values: Values) -> np.ndarray:
-    """Where no steady state was found, or an irregular one that has no largest value."""
+    """Where no steady state was found, nor an irregular motion of which the response was seen."""
     return np.isnan(values.size) | (values.regime == regimes.UNRESOLVED)

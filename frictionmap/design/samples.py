@@ -12,7 +12,8 @@ from ..errors import InputError
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
 from .least_peak import TWO_PEAKS, largest
-from .performance import Peaks
+from .limits import Extreme
+from .performance import Peaks, Unclear
 from .responses import Values, joined_values
 from .task import Task, range_of_friction
 
@@ -61,13 +62,19 @@ class SampledPerformance:
         self._table: dict[float, Peaks] = {}
 
     @property
-    def unknown(self) -> dict[float, int]:
-        """Number of cells of all samples without a known response, by beta."""
-        found: dict[float, int] = {}
-        for curve in self._curves:
-            for beta, count in curve.unknown.items():
-                found[beta] = found.get(beta, 0) + count
-        return found
+    def unknown(self) -> dict[float, Unclear]:
+        """Cells of all samples that may be above all known responses, by beta."""
+        return _of_all([curve.unknown for curve in self._curves])
+
+    @property
+    def harmless(self) -> dict[float, Unclear]:
+        """Cells of all samples with irregular motions far below the largest peak, by beta."""
+        return _of_all([curve.harmless for curve in self._curves])
+
+    @property
+    def stuck(self) -> Extreme:
+        """The friction ratio from which so many samples hold that the quantile does."""
+        return sorted(curve.stuck for curve in self._curves)[self._rank]
 
     @property
     def table(self) -> list[Peaks]:
@@ -87,6 +94,11 @@ class SampledPerformance:
         for curve in self._curves:
             curve.forget(low, high)
         self._table = {beta: one for beta, one in self._table.items() if not low < beta < high}
+
+    def look_at(self, beta: float, r: np.ndarray, peak: float) -> None:
+        """Note cells at frequencies (k,) that are unknown or harmless beside a peak."""
+        for curve in self._curves:
+            curve.look_at(beta, r, peak)
 
     def states(self, peaks: Peaks) -> Values:
         """The responses at peaks, each of its sample."""
@@ -118,6 +130,16 @@ class SampledPerformance:
         return chosen
 
 
+def _of_all(tables: list[dict[float, Unclear]]) -> dict[float, Unclear]:
+    """Cells of several tables together: their number, and those that matter most."""
+    found: dict[float, Unclear] = {}
+    for beta in {beta for table in tables for beta in table}:
+        own = [table[beta] for table in tables if beta in table]
+        worst = max(own, key=lambda one: np.inf if np.isnan(one.seen) else one.seen)
+        found[beta] = worst._replace(number=sum(one.number for one in own))
+    return found
+
+
 def _in_one(parts: list[Peaks], owners: np.ndarray) -> Peaks:
     """Peaks of several samples, from the highest down."""
     r, size = np.concatenate([one.r for one in parts]), np.concatenate([one.size for one in parts])
@@ -135,7 +157,7 @@ def sampled(task: Task, variations: Variations, *, widen: bool) -> tuple[Task, l
     systems = [variations.at(point) for point in variations.points()]
     low, high = task.low, task.high
     if widen:
-        ranges = [range_of_friction(system, task.band, task.mu) for system in systems]
+        ranges = [range_of_friction(system, task.band) for system in systems]
         low, high = (max(ends) for ends in zip(*ranges, strict=True))
     return replace(task, low=low, high=high), [
         replace(task, system=system, low=low, high=high) for system in systems
@@ -144,9 +166,10 @@ def sampled(task: Task, variations: Variations, *, widen: bool) -> tuple[Task, l
 
 def sample_values(tasks: list[Task], curve: SampledPerformance, beta: float) -> dict[str, Any]:
     """What an answer says about its samples."""
+    limits = [task.limits() for task in tasks]
+    ends = {name: max if name.startswith("beta_stuck") else min for name in limits[0]}
     return {
         "sample": np.arange(1, len(tasks) + 1),
         "peak_of_sample": curve.of_samples(beta),
-        "beta_no_stop": min(task.no_stop_up_to for task in tasks),
-        "beta_stuck": max(task.stuck_from for task in tasks),
+        **{name: of(one[name] for one in limits) for name, of in ends.items()},
     }

@@ -12,18 +12,17 @@ from ..features import peak_thresholds
 from ..model.system import System
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales, Units, scales_of
-from .band import Band, checked_band, limit_samples, peak_samples
-from .limits import has_no_stop_limit, largest_stick, least_no_stop, stick_limit
+from .band import Band, checked_band, peak_samples
+from .limits import Extreme, has_no_stop_limit, largest_stick, least_no_stop, starts_matter, stick_limit
 from .performance import Performance
 from .responses import Response, Responses, checked_response
 
 #: Friction ratios of a search: their number, and the share of the highest one at which they begin.
 SEARCHED, _LEAST_SHARE = 60, 1.0 / 500.0
 
-#: The search ends at this multiple of the largest finite boundary to sticking, so that its last friction
-#: ratios hold over the whole band; without damping, where that boundary has poles, at this multiple of its
-#: median.
-_ABOVE_STUCK, _ABOVE_MEDIAN = 1.25, 30.0
+#: The search ends at this multiple of the friction that holds over the whole band, so that its last friction
+#: ratios do; without damping, where there may be none, at this multiple of the median over some frequencies.
+_ABOVE_STUCK, _ABOVE_MEDIAN, _SOME = 1.25, 30.0, 200
 
 
 @dataclass(frozen=True)
@@ -41,20 +40,28 @@ class Task:
     scales: Scales
 
     @cached_property
-    def stuck_from(self) -> float:
-        """Friction ratio that holds over the whole band."""
-        return largest_stick(self.system, self.band, self.mu)[0]
+    def stuck(self) -> Extreme:
+        """The friction ratio that holds over the whole band, whatever the start."""
+        return largest_stick(self.system, self.band, None)
 
-    @cached_property
-    def no_stop_up_to(self) -> float:
-        """Largest friction ratio without a stop anywhere in the band; NaN where there is no such limit."""
-        has_one = has_no_stop_limit(self.system)
-        return least_no_stop(self.system, self.band, self.mu)[0] if has_one else float("nan")
+    def limits(self) -> dict[str, float]:
+        """What an answer says of the band: where it has no stops, and where it sticks.
+
+        With mu > 1 the most friction without a stop whatever the start is a question of its own.
+        """
+        found = {"beta_stuck": self.stuck.beta, "beta_no_stop": float("nan")}
+        no_stop = float("nan")
+        if has_no_stop_limit(self.system):
+            no_stop = least_no_stop(self.system, self.band, self.mu)[0].beta
+        if not starts_matter(self.system, self.mu):
+            return found | {"beta_no_stop": no_stop}
+        some = largest_stick(self.system, self.band, self.mu).beta
+        return found | {"beta_no_stop_some_starts": no_stop, "beta_stuck_some_starts": some}
 
     def performance(self) -> Performance:
         """The performance curve."""
         responses = Responses(self.system, self.response, self.mu, self.threads)
-        return Performance(responses, peak_samples(self.system, self.band))
+        return Performance(responses, peak_samples(self.system, self.band), self.stuck)
 
     def searched(self) -> np.ndarray:
         """Friction ratios of the search, increasing."""
@@ -73,19 +80,20 @@ class Task:
 
 def checked_task(
     system: Any, band: Any, response: tuple[Any, Any, Any], mu: Any, beta: Any, threads: int | None,
-    units: Units | None,
+    units: Units | None, spread: float = 0.0,
 ) -> Task:  # fmt: skip
     """Check the arguments that questions share.
 
     response : quantity, mass, contact
-    beta : two friction ratios, or None: up to 1.25 times the largest beta_stick of the band
+    beta : two friction ratios, or None: see `range_of_friction`
+    spread : relative spread of the friction
     """
     checks.instance(system, "system", System)
     scales = scales_of(units, system)
     found = checked_band(band, scales)
     mu = checks.number(mu, "mu", least=1.0)
     asked = checked_response(system, *response)
-    low, high = range_of_friction(system, found, mu) if beta is None else _checked_range(beta, scales)
+    low, high = range_of_friction(system, found, spread) if beta is None else _checked_range(beta, scales)
     return Task(system, found, asked, mu, low, high, threads, units, scales)
 
 
@@ -96,21 +104,24 @@ def _checked_range(beta: Any, scales: Scales) -> tuple[float, float]:
     return float(ends[0]), float(ends[1])
 
 
-def range_of_friction(system: System, band: Band, mu: float) -> tuple[float, float]:
+def range_of_friction(system: System, band: Band, spread: float = 0.0) -> tuple[float, float]:
     """Range of the friction ratio in which the response over a band changes.
+
+    With a spread it is so wide that all of the spread around some friction ratio holds.
 
     Raises
     ------
     InputError
         The boundary to sticking is infinite or 0 over the whole band.
     """
-    stick = stick_limit(system, limit_samples(system, band, 200), mu)
+    stick = stick_limit(system, band.samples(_SOME, np.empty(0)), None)
     finite = stick[np.isfinite(stick) & (stick > 0.0)]
     if not finite.size:
         raise InputError("beta must be two friction ratios where beta_stick is infinite or 0; got none")
-    high = _ABOVE_STUCK * finite.max()
-    if not system.modes.damping.any():
+    high = _ABOVE_STUCK * largest_stick(system, band, None).beta
+    if np.isinf(high) or not system.modes.damping.any():
         high = min(high, _ABOVE_MEDIAN * float(np.median(finite)))
+    high *= (1.0 + spread) / (1.0 - spread)
     return _least_friction(system, band, high), float(high)
 
 

@@ -22,9 +22,6 @@ GOAL = ("goal", "band", "of", "limit", "page", "turn")
 #: The range of friction around the least peak is that in which the peak is at most this multiple of it.
 NEAR = 1.05
 
-#: A peak below this is rounding: what the goal is about does not move.
-_STILL = 1e-12
-
 
 class Goal(NamedTuple):
     """A question about the friction over a band of frequencies."""
@@ -59,7 +56,8 @@ def answer_goal(view: View, goal: Goal, follower: Follower) -> dict[str, Any]:
 
     `beta` is the friction ratio (None: infinite), `ranges` are those that meet the goal, from and to (None:
     without end).  About a response: `peak`, the largest one over the band, `peaks` where it is reached, with
-    regime and stops, and the `kind` of the optimum.  About a boundary: `r`, the frequency that decides.
+    regime and stops, the `kind` of the optimum, and a `caution` if there is one.  About a boundary: `r`, the
+    frequency that decides, and with mu > 1 `some`, the friction with which it is so from some starts.
 
     Raises
     ------
@@ -105,15 +103,20 @@ def _stuck(view: View, goal: Goal) -> dict[str, Any]:
 
 
 def _of_boundary(ds: xr.Dataset) -> dict[str, Any]:
-    return {"beta": _finite(ds["beta"]), "r": _finite(ds["at_r"])}
+    """The boundary; with mu > 1 also `some`, the friction with which it is so from some starts."""
+    found = {"beta": _finite(ds["beta"]), "r": _finite(ds["at_r"])}
+    for name in ("beta_no_stop_some_starts", "beta_stuck_some_starts"):
+        if name in ds:
+            found["some"] = _finite(ds[name])
+    return found
 
 
 def _of_peaks(ds: xr.Dataset) -> dict[str, Any]:
-    """The optimum and its peaks: the largest one, or two equal ones.  `peak` is None where it is infinite."""
+    """The optimum and its peaks: the largest one, or two equal ones.  Where nothing moves from its friction
+    on there are none, and `r` decides.  `peak` is None where it is infinite.
+    """
     kind, beta, peak = str(ds["kind"].values), float(ds["beta"]), float(ds["peak"][0])
-    if peak < _STILL:  # with more friction only rounding changes
-        beta, peak = min(beta, float(ds["beta_stuck"])), 0.0
-    count = 2 if kind == "two equal peaks" else 1
+    count = {"two equal peaks": 2, "threshold": 0}.get(kind, 1)
     peaks = [
         {
             "r": float(ds["peak_r"][k]),
@@ -122,7 +125,9 @@ def _of_peaks(ds: xr.Dataset) -> dict[str, Any]:
         }
         for k in range(count)
     ]
-    return {"beta": beta, "peak": _finite(peak), "kind": kind, "peaks": peaks}
+    found = {"beta": beta, "peak": _finite(peak), "kind": kind, "peaks": peaks}
+    found |= {"r": _finite(ds["at_r"])} if "at_r" in ds else {}
+    return found | {"caution": ds.attrs["warnings"]} if "warnings" in ds.attrs else found
 
 
 def _regime(value: int) -> str:

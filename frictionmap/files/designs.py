@@ -9,12 +9,22 @@ from .. import regimes
 from ..datasets.design_labels import DESIGN, DESIGN_AXES
 from ..datasets.schema import checked_values, placed
 from ..errors import InputError
+from .estimates import warnings_of
 
 #: Width of the first column of a summary.
 _WIDTH = 34
 
 #: Peaks and ranges that a summary lists.
 _SHOWN = 6
+
+
+#: Boundaries over the band, in words.
+_OF_BAND = {
+    "beta_no_stop": "no stops in the band up to beta",
+    "beta_no_stop_some_starts": "can be without stops up to beta",
+    "beta_stuck": "sticks over the whole band from beta",
+    "beta_stuck_some_starts": "can stay stuck from beta",
+}
 
 
 def design_form(ds: xr.Dataset) -> xr.Dataset:
@@ -59,10 +69,11 @@ def _rows(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
     yield from _of_peaks(ds)
     yield from _of_ranges(ds)
     yield from _of_margins(ds)
-    if "beta_no_stop" in ds and np.isfinite(float(ds["beta_no_stop"])):
-        yield "no stops in the band up to beta", f"{float(ds['beta_no_stop']):.6g}"
-    if "beta_stuck" in ds:
-        yield "sticks over the whole band from beta", f"{float(ds['beta_stuck']):.6g}"
+    for name, words in _OF_BAND.items():
+        if name in ds and (np.isfinite(float(ds[name])) or name == "beta_stuck"):
+            yield words, f"{float(ds[name]):.6g}"
+    for words in warnings_of(ds):
+        yield "warning", words
 
 
 def _friction(ds: xr.Dataset, name: str, beside: str) -> str:
@@ -84,7 +95,9 @@ def _of_peaks(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
     kind = f", {ds['kind'].values}" if "kind" in ds else ""
     length = f" ({1e3 * float(ds['peak_m'][0]):.6g} mm)" if "peak_m" in ds else ""
     yield f"least peak, {response}", f"{float(ds['peak'][0]):.10g}{length}{kind}"
-    for k in range(min(ds.sizes["peak"], _SHOWN)):
+    if "kind" in ds and str(ds["kind"].values) == "threshold":
+        yield "", "with this friction or more it does not move, at any frequency of the band"
+    for k in range(min(ds.sizes["peak"], _SHOWN) if "peak_r" in ds else 0):
         yield ("peaks" if k == 0 else ""), _peak(ds, k)
     if {"quantile", "peak_of_sample"} <= set(ds.variables):
         sizes = ds["peak_of_sample"].values

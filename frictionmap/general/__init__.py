@@ -11,6 +11,7 @@ partial          least friction at which one contact sticks while the others mov
 starts           initial states: at rest, or in a large sliding motion
 still            masses that do not move
 maps             the cells of a map, on several threads
+resting_starts   motions from many states in which a contact is at its limit of friction (mu > 1)
 dataset          maps and boundaries as labelled variables
 recorded         one steady state and the series of its steps, from the kernels
 steps            one steady state as the series of its steps

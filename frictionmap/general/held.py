@@ -43,7 +43,7 @@ def _linear(
     return matrix, load
 
 
-def _orders(general: General) -> list[int]:
+def load_orders(general: General) -> list[int]:
     """Orders of the harmonics that move the structure."""
     return sorted({*general.forces, *general.base})
 
@@ -66,7 +66,7 @@ def held_forces_of(
     w = vectors[~elastic].T
     stiffness = system.modes.stiffness + (vectors.T * kt) @ vectors
     forces, motions = {}, {}
-    for order in _orders(general):
+    for order in load_orders(general):
         matrix = np.zeros((r.size, n + w.shape[1], n + w.shape[1]), dtype=complex)
         right = np.zeros((r.size, n + w.shape[1]), dtype=complex)
         matrix[:, :n, :n], right[:, :n] = _linear(system, stiffness, order, r)
@@ -110,7 +110,7 @@ def sliding_phasors(system: System, r: np.ndarray) -> np.ndarray:
     general = general_of(system)
     moved = np.array([float(group.base) for group in general.groups])
     found = []
-    for order in _orders(general):
+    for order in load_orders(general):
         x = _solved(*_linear(system, system.modes.stiffness, order, r))
         with np.errstate(invalid="ignore"):  # an infinite x
             found.append(x @ general.vectors.T - general.base.get(order, 0.0) * moved)
@@ -125,7 +125,7 @@ def belt_limit(system: System, r: np.ndarray) -> np.ndarray:
     general = general_of(system)
     if general.count > 1 or not general.groups[0].first.wall_velocity:
         return np.full(r.size, np.nan)
-    orders = _orders(general)
+    orders = load_orders(general)
     speeds = []
     for order in orders:
         matrix, load = _linear(system, system.modes.stiffness, order, r)
@@ -242,11 +242,23 @@ def stick_scales(general: General, needed: np.ndarray, mu: np.ndarray) -> np.nda
 
     inf for a contact with a friction force of its own that is too small; 0 where it is large enough.
     """
-    found = np.empty((mu.size, *needed.shape))
+    return np.stack([_scales(general, needed, float(value), 1) for value in mu])
+
+
+def rest_scales(general: General, needed: np.ndarray) -> np.ndarray:
+    """beta from which kinetic friction is enough for each contact, (n_r, N), see `stick_scales`.
+
+    If it is enough for all contacts, every motion comes to rest (theory.md 6, 11).
+    """
+    return _scales(general, needed, 1.0, 0)
+
+
+def _scales(general: General, needed: np.ndarray, mu: float, which: int) -> np.ndarray:
+    """beta with which the kinetic (0) or static (1) friction of each contact is what it needs, (n_r, N)."""
+    found = np.empty(needed.shape)
     for j, group in enumerate(general.groups):
-        for m, value in enumerate(mu):
-            own = group.friction(0.0, float(value))[1]
-            per_beta = group.friction(1.0, float(value))[1] - own
-            rest = np.maximum(needed[:, j] - own, 0.0)
-            found[m, :, j] = rest / per_beta if per_beta > 0.0 else np.where(rest > 0.0, np.inf, 0.0)
+        own = group.friction(0.0, mu)[which]
+        per_beta = group.friction(1.0, mu)[which] - own
+        rest = np.maximum(needed[:, j] - own, 0.0)
+        found[:, j] = rest / per_beta if per_beta > 0.0 else np.where(rest > 0.0, np.inf, 0.0)
     return found

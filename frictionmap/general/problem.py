@@ -95,8 +95,8 @@ def _phasors(channels: list[Channel], orders: tuple[int, ...], r: np.ndarray) ->
     return np.ascontiguousarray(np.stack((table.real, -table.imag), axis=1))
 
 
-def _rates(modal: ModalSystem, spring: np.ndarray, orders: tuple[int, ...], r: np.ndarray) -> np.ndarray:
-    """Bound on the rate of the fastest part of the motion, (n_r,), in tau.
+def _fastest(modal: ModalSystem, spring: np.ndarray) -> float:
+    """Bound on the rate of the fastest part of the motion, in t = tau/r.
 
     Holding contacts lowers natural frequencies or leaves them below the highest one; springs raise them.  The
     roots of l^2 + c l + k have moduli of (c + sqrt(c^2 + 4 k))/2 at most.
@@ -104,8 +104,17 @@ def _rates(modal: ModalSystem, spring: np.ndarray, orders: tuple[int, ...], r: n
     stiffness = np.diag(modal.squares) + modal.chi.T @ (spring[:, np.newaxis] * modal.chi)
     k = float(np.linalg.eigvalsh(stiffness)[-1])
     c = float(np.linalg.norm(modal.damping, 2))
-    fastest = 0.5 * (c + np.sqrt(c * c + 4.0 * k))
-    return np.maximum(fastest / np.where(r > 0.0, r, 1.0), float(max(orders)))
+    return 0.5 * (c + np.sqrt(c * c + 4.0 * k))
+
+
+def _rates(modal: ModalSystem, spring: np.ndarray, orders: tuple[int, ...], r: np.ndarray) -> np.ndarray:
+    """Bound on the rate of the fastest part of the motion, (n_r,), in tau."""
+    return np.maximum(_fastest(modal, spring) / np.where(r > 0.0, r, 1.0), float(max(orders)))
+
+
+def least_ratio(system: System) -> float:
+    """Least r > 0 at which motions of a system are followed; see `_refuse_low`."""
+    return _fastest(modal_system(system), springs(general_of(system))) / _HIGHEST_RATE
 
 
 def _symmetric(general: General) -> bool:

@@ -67,12 +67,36 @@ def held_structure(
     return HeldStructure(omega, ratio, spread @ basis, inverse @ spread.T, static_shape, 1.0 / compliance)
 
 
+def _allowed(held: np.ndarray, n: int) -> np.ndarray:
+    """Orthonormal displacements (n, m) in which the displacements held (k, n) are 0."""
+    from scipy.linalg import null_space  # not needed, and not loaded, for one mass
+
+    return null_space(held) if len(held) else np.eye(n)
+
+
 def constrained_frequencies(mass: np.ndarray, stiffness: np.ndarray, held: np.ndarray) -> np.ndarray:
     """Natural frequencies of a structure in which the displacements held (k, n) are 0."""
-    from scipy.linalg import eigh, null_space  # not needed, and not loaded, for one mass
+    from scipy.linalg import eigh
 
-    allowed = null_space(held) if len(held) else np.eye(len(mass))
+    allowed = _allowed(held, len(mass))
     if not allowed.shape[1]:
         return np.empty(0)
     squares = eigh(allowed.T @ stiffness @ allowed, allowed.T @ mass @ allowed, eigvals_only=True)
     return np.sqrt(np.maximum(squares, 0.0))
+
+
+def complex_frequencies(
+    mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray, held: np.ndarray
+) -> np.ndarray:
+    """Complex frequencies p of free vibrations e^{i p t}, Re p >= 0, with the displacements held (k, n) 0.
+
+    They are w (sqrt(1 - zeta^2) + i zeta) of a mode; of two that are overdamped Re p is 0.
+    """
+    if not damping.any():
+        return constrained_frequencies(mass, stiffness, held).astype(complex)
+    allowed = _allowed(held, len(mass))
+    m, c, k = (allowed.T @ one @ allowed for one in (mass, damping, stiffness))
+    size = len(m)
+    rates = np.hstack((-np.linalg.solve(m, k), -np.linalg.solve(m, c)))
+    found = -1j * np.linalg.eigvals(np.vstack((np.eye(size, 2 * size, size), rates)))
+    return found[found.real >= 0.0]

@@ -92,10 +92,20 @@ def find_beta_stick(force: np.ndarray, mu: np.ndarray) -> np.ndarray:
     return modulus(force) / mu[:, np.newaxis]
 
 
+def _least(omega: np.ndarray, zeta: np.ndarray) -> float:
+    """Least r > 0 beside the rates of free motion of oscillators."""
+    return _LEAST_RATIO * float((omega * np.where(zeta > 1.0, 2.0 * zeta, 1.0)).max())
+
+
+def least_ratio(system: System) -> float:
+    """Least r > 0 at which a system has curves."""
+    modes = system.modes
+    return _least(modes.w, modes.zeta) if system.normalised else _least(modes.free.omega, modes.free.zeta)
+
+
 def _refuse_low(r: np.ndarray, omega: np.ndarray, zeta: np.ndarray) -> None:
     """Refuse 0 < r far below the rates of free motion of oscillators."""
-    rates = omega * np.where(zeta > 1.0, 2.0 * zeta, 1.0)
-    least = _LEAST_RATIO * float(rates.max())
+    least = _least(omega, zeta)
     small = r[r < least]
     if small.any():  # any but 0
         raise InputError(

@@ -83,10 +83,9 @@ def test_what_is_held_moves_least_where_it_is_stuck(pages, of):
     """Mass 2 is in contact with the wall."""
     found = answer(pages[CHAIN], f"goal=least-peak&band=0.3,0.9&of={of}")
     stuck = fm.design.stuck(config_of(CHAIN, {}).system, [0.3, 0.9]).beta.item()
-    assert (found["peak"], found["kind"]) == (0.0, "plateau")
-    assert found["beta"] == pytest.approx(stuck, rel=1e-3)
-    assert found["ranges"] == [[found["beta"], None]]
-    assert [(peak["regime"], peak["stops"]) for peak in found["peaks"]] == [("permanent sticking", None)]
+    assert (found["peak"], found["kind"], found["peaks"]) == (0.0, "threshold", [])
+    assert (found["beta"], found["ranges"]) == (stuck, [[stuck, None]])
+    assert found["r"] == 0.9
 
 
 def test_goals_have_the_values_of_independent_programs(pages):
@@ -101,7 +100,9 @@ def test_goals_have_the_values_of_independent_programs(pages):
     assert (found["beta"], found["r"]) == (pytest.approx(0.517959444748, rel=1e-11), 0.6)
     assert found["ranges"] == [[0.0, found["beta"]]]
     found = answer(pages[ONE], "goal=no-stop&band=0.6,1.5&mu=1.5")
-    assert found["beta"] == pytest.approx(0.358713117310, rel=1e-11)
+    assert found["beta"] == found["some"] == pytest.approx(0.358713117310, rel=1e-11)
+    found = answer(pages[ONE], "goal=stuck&band=0.6,1.5&mu=1.5")
+    assert (found["beta"], found["some"]) == (1.0, pytest.approx(2.0 / 3.0, rel=1e-12))
     found = answer(pages[WALL], "goal=stuck&band=0.5,1.5")
     assert (found["beta"], found["r"], found["ranges"]) == (2.25, 1.5, [[2.25, None]])
 
@@ -178,7 +179,7 @@ def test_a_question_can_be_cancelled_and_is_not_changed_by_it(text, question, ar
     with watched(lambda: next(calls)):
         counted = question(system, band, **arguments)
     assert counted.drop_attrs().identical(plain.drop_attrs())
-    assert next(calls) > 5
+    assert next(calls) > 3  # below, the fourth look gives up
 
     left = iter(range(3))
 

@@ -38,7 +38,7 @@ export class Design {
     this.map = map;
     this.panel = new GoalPanel(form, {
       change: (part) => this.#change(part),
-      select: () => this.does.select([this.answer.peaks?.[0].r ?? this.answer.r, this.answer.beta]),
+      select: () => this.does.select([this.answer.peaks?.[0]?.r ?? this.answer.r ?? this.answer.band[0], this.answer.beta]),
       pin: (name) => this.#pin(name),
     });
     this.handles = new Handles(map, (band, done) => this.#onHandle(band, done));

@@ -104,28 +104,45 @@ function reached({ kind, peaks, ...answer }) {
     const counted = stops > 0 ? `, ${short(stops)} stops per cycle` : "";
     return `at ${place(r, answer)}: ${regime}${counted}`;
   });
+  if (kind === "threshold") return "With this friction or more it does not move, at any frequency of the band.";
   if (kind === "two equal peaks") return `Two equal peaks, ${places.join("; and ")}.`;
   const more = { plateau: " More friction changes nothing.", "at the bound": " It is at the end of the friction that was searched." };
   return `It is reached ${places[0]}.${more[kind] ?? ""}`;
 }
+
+/** With static friction above kinetic friction: what holds from some starts only. */
+function fromSome(words, { some, ...answer }) {
+  return typeof some === "number" ? [`${words} ${friction(some, answer)}: from some starts only.`] : [];
+}
+
+const cautionOf = ({ caution }) => (caution ? [`Caution: ${caution}.`] : []);
 
 const SENTENCES = {
   "least-peak": (answer, label) => [
     `Least peak of ${label}: ${lengthOf(answer.peak ?? Infinity, answer)}, at ${friction(answer.beta, answer)}.`,
     reached(answer),
     ...(answer.peak ? [`At most 5 % above it for ${rangesOf(answer)}.`] : []),
+    ...cautionOf(answer),
   ],
   "at-most": (answer, label) => [
     `${capital(label)} stays within ${lengthOf(answer.limit, answer)} for ${rangesOf(answer)}.`,
     `Least peak: ${lengthOf(answer.peak ?? Infinity, answer)}, at ${friction(answer.beta, answer)}. ${reached(answer)}`,
+    ...cautionOf(answer),
   ],
   "no-stop": (answer) => {
     if (!answer.ranges.length) return [`Any friction causes stops in the band; ${place(answer.r, answer)} decides.`];
     if (answer.beta === null) return ["No stops with any friction."];
-    return [`No stops up to ${friction(answer.beta, answer)}; ${place(answer.r, answer)} decides.`];
+    const tried = answer.some === undefined ? "" : " from any start that was tried";
+    return [
+      `No stops${tried} up to ${friction(answer.beta, answer)}; ${place(answer.r, answer)} decides.`,
+      ...fromSome("Without stops up to", answer),
+    ];
   },
   stuck: (answer) => answer.ranges.length
-    ? [`Always stuck at or above ${friction(answer.beta, answer)}; ${place(answer.r, answer)} decides.`]
+    ? [
+      `Always stuck at or above ${friction(answer.beta, answer)}${answer.some === undefined ? "" : ", whatever the start"}; ${place(answer.r, answer)} decides.`,
+      ...fromSome("Stuck at or above", answer),
+    ]
     : [`No friction holds over the whole band: stuck, the structure resonates without damping at ${place(answer.r, answer)}.`],
 };
 

@@ -77,7 +77,8 @@ function drawOptimum(pen, plate, { left, right }, answer) {
   const y = plate.y(answer.beta);
   if (right <= left) return;
   stroke(pen, [[left, y], [right, y]], 2.5);
-  for (const r of answer.peaks ? answer.peaks.map((peak) => peak.r) : [answer.r]) {
+  const decides = typeof answer.r === "number" ? [answer.r] : [];
+  for (const r of answer.peaks?.length ? answer.peaks.map((peak) => peak.r) : decides) {
     const x = plate.x(r);
     pen.beginPath();
     pen.arc(x, y, 5, 0, 2 * Math.PI);

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from ..palette import LIM, LINES, STICK
+from ..palette import LIM, LINES, STICK, LineStyle
 from ..panels import Handle
 from ..second_axes import frequency_on_top, on_the_right
 
@@ -15,12 +15,16 @@ from ..second_axes import frequency_on_top, on_the_right
 _SHOWN = 3.0
 
 
+#: From there on every motion comes to rest (mu > 1).
+_STUCK: LineStyle = {**STICK, "linestyle": (0, (1.5, 1.2)), "label": "sticks whatever the start"}
+
+
 def draw_limits(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     """Draw the boundaries over frequency, and where the answer or the working point is."""
     r, beta = ds["r_search"].values, float(ds["beta"])
     handles: list[Handle] = []
     tops = []
-    for name, style in (("beta_lim_of_r", LIM), ("beta_stick_of_r", STICK)):
+    for name, style in (("beta_lim_of_r", LIM), ("beta_stick_of_r", STICK), ("beta_stuck_of_r", _STUCK)):
         if name in ds:
             values = ds[name].values
             tops.append(float(np.median(values[np.isfinite(values)])))

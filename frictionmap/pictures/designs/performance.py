@@ -45,10 +45,7 @@ def draw_performance(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     ax.plot(beta, np.minimum(size, HIGH * top), color="black", linewidth=1.4)
     handles.append(Line2D([], [], color="black", linewidth=1.4, label=_curve_label(ds)))
     ax.plot([best], [least], "o", color=_ANSWER, markersize=6.0, zorder=4.0)
-    kind = f" ({ds['kind'].values})" if "kind" in ds else ""
-    handles.append(
-        Line2D([], [], color=_ANSWER, marker="o", linestyle="none", label=f"least: β = {best:.4g}{kind}")
-    )
+    handles.append(Line2D([], [], color=_ANSWER, marker="o", linestyle="none", label=_answer_label(ds)))
     if "peak_of_sample" in ds:
         sizes = ds["peak_of_sample"].values
         ax.plot(np.full(sizes.size, best), sizes, "_", color=_ANSWER, markersize=9.0, zorder=3.0)
@@ -84,6 +81,13 @@ def draw_ridge(ax: Axes, ds: xr.Dataset) -> list[Handle]:
         Line2D([], [], color=_ASIDE, linewidth=1.1, linestyle=(0, (4, 2)), label="its friction"),
         Line2D([], [], color=_ANSWER, marker="o", linestyle="none", label=label),
     ]
+
+
+def _answer_label(ds: xr.Dataset) -> str:
+    best, kind = float(ds["beta"]), str(ds["kind"].values) if "kind" in ds else ""
+    if kind == "threshold":
+        return f"does not move from β = {best:.4g} on"
+    return f"least: β = {best:.4g}" + (f" ({kind})" if kind else "")
 
 
 def _curve_label(ds: xr.Dataset) -> str:

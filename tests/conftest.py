@@ -89,6 +89,15 @@ def measured() -> Path:
 
 
 @pytest.fixture(scope="session")
+def cases() -> Path:
+    """The folder of inputs that users reported."""
+    folder = REFERENCE.parent / "cases"
+    if not folder.is_dir():
+        pytest.skip("the reported inputs are not at hand")
+    return folder
+
+
+@pytest.fixture(scope="session")
 def curve_rows() -> tuple[dict, list[dict]]:
     """Systems and rows of the 17-digit quantities of response curves."""
     return _rows("curves.json")

@@ -104,6 +104,12 @@ def measured(reference_path: Callable[[str], Path]) -> Path:
 
 
 @pytest.fixture(scope="session")
+def cases(reference_path: Callable[[str], Path]) -> Path:
+    """The folder of inputs that users reported, beside the reference data."""
+    return reference_path("../cases")
+
+
+@pytest.fixture(scope="session")
 def curve_rows(reference_table: Callable[[str], dict]) -> tuple[dict, list[dict]]:
     """Systems and rows of the 17-digit quantities of response curves."""
     content = reference_table("curves.json")

@@ -52,7 +52,7 @@ def synthetic(truth, seed, mu=1.0):
     time = np.arange(int(truth.rate * truth.length)) / truth.rate
     w, d = 2.0 * np.pi * truth.f_n, np.sqrt(1.0 - truth.zeta**2)
     half = np.pi / (w * d)
-    x = np.empty(time.size)
+    x = np.full(time.size, truth.X0)  # held before t0
     begin, place = truth.t0, truth.X0
     while True:
         later = time >= begin

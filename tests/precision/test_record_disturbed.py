@@ -7,7 +7,8 @@ import pytest
 from records import Truth, places, steady, synthetic
 
 import frictionmap as fm
-from frictionmap.identify.signals.plateaus import unclipped_mass
+from frictionmap.identify.signals.plateaus import unclipped
+from frictionmap.identify.signals.turning_points import resolution
 
 RIG = Truth(
     3.13, 0.0055, 0.8372, 1.0, -0.1, 1.001, (0.0, 1.82 * np.exp(0.7j), 0.02 * np.exp(2.0j)), rate=100.0,
@@ -171,7 +172,7 @@ def test_a_mass_that_sticks_is_not_clipped(rate, step, mu):
     time = np.arange(0.0, 8.0, 1.0 / rate)
     x = quantised(time, step, settled(rig), rig)
     assert (x == x.max()).sum() > 30
-    assert unclipped_mass(time, x).all()
+    assert unclipped(time, x).all()
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.01])
@@ -179,7 +180,7 @@ def test_a_range_that_ends_within_the_motion_clips(motion, noise):
     time = np.arange(0.0, 8.0, 0.004)
     x = quantised(time, 1e-4, motion) + np.random.default_rng(1).normal(0.0, noise, time.size)
     cut = np.clip(x, -1.2, 1.2)
-    np.testing.assert_array_equal(unclipped_mass(time, cut), np.abs(x) < 1.2)
+    np.testing.assert_array_equal(unclipped(time, cut), np.abs(x) < 1.2)
 
 
 def test_a_record_of_a_mass_that_sticks_has_no_warning_of_clipping(motion):
@@ -195,7 +196,91 @@ def test_noise_shows_beside_flat_parts_that_are_most_of_a_record(motion):
     x = places(RIG, motion, time) + np.random.default_rng(1).normal(0.0, 0.01, time.size)
     cut = np.clip(x, -0.7, 0.5)
     assert np.mean((cut == -0.7) | (cut == 0.5)) > 0.5
-    np.testing.assert_array_equal(unclipped_mass(time, cut), (x > -0.7) & (x < 0.5))
+    np.testing.assert_array_equal(unclipped(time, cut), (x > -0.7) & (x < 0.5))
+
+
+def coarse(x, steps, noise=0.0, seed=1):
+    """Readings of a converter with so many steps over the motion, which its noise [steps] does not cover."""
+    step = np.ptp(x) / steps
+    return np.round((x + np.random.default_rng(seed).normal(0.0, noise * step, x.size)) / step) * step
+
+
+def as_published(time, x, seed=1):
+    """Plateaus at different places, and readings of one step that differ by a 500th of it in some rows."""
+    readings = coarse(x + 0.03 * np.sin(2.0 * np.pi * 0.13 * time), 4000, 0.4, seed)
+    rng = np.random.default_rng(100 + seed)
+    return readings + np.where(rng.uniform(size=x.size) < 0.02, 1.6e-6, 0.0)
+
+
+@pytest.mark.parametrize("steps", [30, 100, 1000, 4000, 65536])
+@pytest.mark.parametrize("noise", [0.0, 0.1, 0.3, 0.6])
+@pytest.mark.parametrize("mu", [1.0, 1.3])
+def test_stops_of_a_coarse_record_are_not_clipped(steps, noise, mu):
+    """However coarse the converter is, a mass arrives at a stop without speed."""
+    rig = RIG._replace(mu=mu)
+    for rate in (60.0, 250.0, 1000.0):
+        time = np.arange(0.0, 8.0, 1.0 / rate)
+        x = coarse(places(rig, settled(rig), time), steps, noise)
+        assert unclipped(time, x).all(), rate
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_stops_at_different_places_are_not_clipped(motion, seed):
+    """One of them is the largest value of all, for more samples than noise repeats."""
+    time = np.arange(0.0, 10.0, 0.004)
+    x = as_published(time, places(RIG, motion, time), seed)
+    assert resolution(x) == pytest.approx(np.ptp(places(RIG, motion, time)) / 4000, rel=0.02)
+    assert unclipped(time, x).all()
+    time, base, _ = synthetic(RIG._replace(rate=250.0), motion, seed)
+    x = as_published(time, places(RIG, motion, time), seed)
+    ds = fm.identify.record(time, base, x, damping_reference="base", known={"mu": 1.0})
+    assert "clipped" not in ds.warnings
+    assert ds.sizes["sample"] == time.size
+    assert (np.abs(off(ds)) < 4.0).all(), off(ds)
+
+
+def test_a_published_record_with_stops_is_not_clipped(cases):
+    """2,501 samples; the mass sticks for 46 % of the time, and the converter is coarse.
+
+    The lag of sine fits of both channels, 1 to 15 harmonics with none to 16 slow waves, is 29.544 to 29.578.
+    """
+    time, base, x = np.loadtxt(
+        cases / "record-plateau-taken-for-clipping" / "record.csv", delimiter=",", skiprows=1
+    ).T
+    ds = fm.identify.record(
+        time, base, x, damping_reference="base", known={"f_n": 3.12978, "zeta": 0.0055, "mu": 1.0}
+    )
+    assert "clipped" not in ds.warnings
+    assert ds.sizes["sample"] == 2501
+    assert float(ds.estimate.sel(parameter="x_F")) == pytest.approx(0.843, abs=0.0015)
+    assert float(ds.estimate.sel(parameter="lag_deg")) == pytest.approx(29.56, abs=0.03)
+    assert float(np.var(ds.residual) / np.var(x)) < 0.006
+
+
+@pytest.mark.parametrize("steps", [100, 1000, 65536])
+@pytest.mark.parametrize("noise", [0.0, 0.3, 2.0])
+@pytest.mark.parametrize(("lowest", "highest"), [(-1.2, 1.2), (-9.0, 1.1), (-0.9, 9.0), (-0.7, 0.5)])
+def test_a_range_that_ends_within_a_coarse_motion_clips(motion, steps, noise, lowest, highest):
+    """Both ends of the range or one, whether the converter or what is before it ends there."""
+    for rate in (100.0, 1000.0):
+        time = np.arange(0.0, 8.0, 1.0 / rate)
+        x = places(RIG, motion, time)
+        step = np.ptp(x) / steps
+        noisy = x + np.random.default_rng(1).normal(0.0, noise * step, time.size)
+        cut = np.round(np.clip(noisy, lowest, highest) / step) * step
+        at_end = ((cut == cut.min()) & (lowest > -9.0)) | ((cut == cut.max()) & (highest < 9.0))
+        np.testing.assert_array_equal(unclipped(time, cut), ~at_end)
+
+
+def test_a_stop_has_less_noise_than_a_slide(motion):
+    """Slides shake the sensor; then flat stops show nothing of the range."""
+    time = np.arange(0.0, 8.0, 0.004)
+    x = places(RIG, motion, time)
+    slides = np.abs(np.gradient(x, time)) > 0.05
+    shaken = x + np.where(slides, np.random.default_rng(1).normal(0.0, 0.01, time.size), 0.0)
+    shaken += 0.02 * np.sin(2.0 * np.pi * 0.13 * time) * ~slides
+    readings = np.round(shaken / 1e-3) * 1e-3
+    assert unclipped(time, readings).all()
 
 
 @pytest.mark.slow

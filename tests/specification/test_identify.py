@@ -203,6 +203,29 @@ def test_coarse_samples_are_not_clipped():
     assert "clipped" not in fm.identify.free_decay(time, np.round(x, 1)).warnings
 
 
+@pytest.mark.parametrize("step", [1e-6, 1e-3, 0.01, 0.1])
+@pytest.mark.parametrize("late", [0.0, 0.4, 0.9])
+def test_a_mass_held_before_its_release_is_not_clipped(step, late):
+    """Until t0 it is at the largest value of the record, then it is soon far away from it."""
+    truth = TRUTH._replace(t0=0.1 + late / TRUTH.rate, noise=0.0)
+    time, x = synthetic(truth, 1)
+    readings = np.round(x / step) * step
+    ds = fm.identify.free_decay(time, readings)
+    assert "clipped" not in ds.warnings
+    assert ds.sizes["sample"] == time.size
+
+
+@pytest.mark.parametrize("step", [0.01, 0.05, 0.2])
+def test_a_coarse_record_is_clipped_where_its_range_ends(step):
+    time, x = synthetic(TRUTH._replace(rate=1000.0), 1)
+    readings = np.round(np.clip(x, -5.0, 9.0) / step) * step
+    with_both = np.round(np.clip(x, -5.0, 5.0) / step) * step
+    for cut in (readings, with_both):
+        ds = fm.identify.free_decay(time, cut)
+        assert "clipped" in ds.warnings
+        assert float(ds.data.min()) > -5.0 + 0.5 * step
+
+
 BAD = {
     "no-header": "_s, _ms", "no-unit": "none", "unknown-unit": "'furlong'", "missing-column": "x_mm",
     "empty": "x_mm", "nan": "line 402", "text": "line 122", "time-backwards": "line 303",

@@ -8,12 +8,8 @@ import xarray as xr
 from ... import checks
 from ...errors import InputError
 from ...units.table import checked_unit, conversion
-from ..signals.samples import (
-    checked_record,
-    largest_gap,
-    unclipped,
-    within,
-)
+from ..signals.plateaus import unclipped
+from ..signals.samples import checked_record, largest_gap, within
 from ..signals.turning_points import TurningPoints, linear_decrement, noise_level, without_spikes
 from ..statistics.cautions import autocorrelation_warnings, bound_warnings, correlation_warnings
 from ..statistics.estimates import estimates, number, verdict
@@ -122,7 +118,7 @@ def free_decay(
     times, places = checked_record(time, x)
     inside = within(window, times)
     times, places = times[inside], places[inside]
-    good = unclipped(places)
+    good = unclipped(times, places)
     t, data = times[good], places[good]
     points = checked_turning_points(t, without_spikes(data) if loss == "soft_l1" else data)
     outliers = noise_level(data) if loss == "soft_l1" else 0.0

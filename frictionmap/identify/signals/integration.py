@@ -15,7 +15,8 @@ from ... import checks
 from ...errors import InputError
 from ...units.table import MOTIONS, UNITS, units_of
 from .phasors import SAMPLES_OF_HIGHEST, harmonics_at, phasors_of
-from .samples import checked_record, unclipped
+from .plateaus import unclipped
+from .samples import checked_record
 
 #: Harmonics of a record, at most.  An acceleration jumps where
 #: friction changes sign: harmonics that are left out would leak into the others where cycles are not whole.
@@ -81,7 +82,7 @@ def displacements(
     orders = [derivative_order(one) for one in units]
     for name, channel, order in zip(("base", "x"), channels, orders, strict=True):
         if order:
-            _check_unclipped(name, channel)
+            _check_unclipped(name, times, channel)
     if not any(orders):
         return Displacements(scaled[:, 0], scaled[:, 1], (0.0, 0.0))
     found = phasors_of(times, scaled)
@@ -116,9 +117,9 @@ def _check_unit(unit: str, name: str, *kinds: str) -> None:
         raise InputError(f"{name} must be one of {', '.join(valid)}; got {checks.one_line(unit)}")
 
 
-def _check_unclipped(name: str, values: np.ndarray) -> None:
+def _check_unclipped(name: str, time: np.ndarray, values: np.ndarray) -> None:
     """Refuse clipped data: integration spreads the error over all samples."""
-    clipped = 1.0 - np.mean(unclipped(values))
+    clipped = 1.0 - np.mean(unclipped(time, values))
     if clipped > 0.0:
         raise InputError(
             f"cannot integrate {name}: it is clipped, {clipped:.1%} of the samples are at the extremes; "

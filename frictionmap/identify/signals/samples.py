@@ -1,15 +1,10 @@
-"""Samples of a record, checked: times that increase, the window, samples that are clipped, gaps."""
+"""Samples of a record, checked: times that increase, the window, gaps."""
 
 import numpy as np
 
 from ... import checks
 from ...errors import InputError
-from .turning_points import GAP, resolution
-
-#: Samples in a row at an extreme value are clipped if the next one is far from it: by so many steps of the
-#: resolution, of which a smooth turning point makes few.
-_CLIPPED_ROW = 3
-_CLIPPED_STEPS = 4.0
+from .turning_points import GAP
 
 
 def checked_record(time: object, x: object, name: str = "x") -> tuple[np.ndarray, np.ndarray]:
@@ -39,32 +34,6 @@ def within(window: object, time: np.ndarray) -> np.ndarray:
             f"got {begin:g} to {end:g}"
         )
     return inside
-
-
-def unclipped(x: np.ndarray) -> np.ndarray:
-    """Samples that are not cut off at the ends of a measuring range."""
-    good = np.ones(x.size, dtype=bool)
-    for begin, _ in clipped_runs(x):
-        good[x == x[begin]] = False
-    return good
-
-
-def clipped_runs(x: np.ndarray) -> list[tuple[int, int]]:
-    """Begin and end of every run of clipped samples, at an extreme value far from its neighbours."""
-    step = resolution(x)
-    found = []
-    for extreme in (x.min(), x.max()):
-        for begin, end in _runs(x == extreme):
-            beside = [abs(x[k] - extreme) for k in (begin - 1, end) if 0 <= k < x.size]
-            if end - begin >= _CLIPPED_ROW and beside and max(beside) > _CLIPPED_STEPS * step:
-                found.append((begin, end))
-    return found
-
-
-def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:
-    """Begin and end of every run of chosen samples."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], chosen.astype(int), [0]))))
-    return [(int(begin), int(end)) for begin, end in edges.reshape(-1, 2)]
 
 
 def largest_gap(time: np.ndarray) -> float:

@@ -8,6 +8,14 @@ import numpy as np
 #: A swing back by this share of the largest one is a turning point, if noise does not swing as far.
 _SHARE = 0.02
 
+#: Shares of the changes from sample to sample, in order of size, up to which the least step is looked for,
+#: and its multiples that are compared: more would add up the error of the step.
+_SMALL_CHANGES, _MULTIPLES = (0.25, 0.1, 0.05, 0.02), 8
+
+#: Changes are multiples of a step if this share of them, of this many or more, deviates by less than this
+#: part of the step.  Of changes that are no multiples a fifth do.
+_MOST, _ENOUGH, _DEVIATION = 0.9, 20, 0.1
+
 #: Swings by which the number of samples a cycle is judged: so large that no usual noise makes one.
 _LARGE = 0.2
 
@@ -59,9 +67,32 @@ def without_spikes(x: np.ndarray) -> np.ndarray:
 
 
 def resolution(x: np.ndarray) -> float:
-    """The least difference between two values; 0 if all are equal."""
-    steps = np.diff(np.unique(x))
-    return float(steps.min()) if steps.size else 0.0
+    """The step of the converter that made a record; 0 if all values are equal.
+
+    Readings of one step may differ a little, by the digits of a file or a change of units, so the least
+    difference between two values can be far below the step.  If the small differences from one sample to the
+    next are multiples of one number, that is the step.  Else it is the least difference between two values.
+    """
+    changes = np.abs(np.diff(x))
+    changes = np.sort(changes[changes > 0.0])
+    if not changes.size:
+        return 0.0
+    for share in _SMALL_CHANGES:
+        step = _common_step(changes, float(changes[int(share * changes.size)]))
+        if step is not None:
+            return step
+    return float(np.diff(np.unique(x)).min())
+
+
+def _common_step(changes: np.ndarray, near: float) -> float | None:
+    """The number near a given one of which small changes, increasing, are multiples; None if they are not."""
+    small = changes[changes < (_MULTIPLES + 0.5) * near]
+    if small.size < _ENOUGH:
+        return None
+    whole = small > 0.5 * near  # less than that is the deviation of two readings of one step
+    step = float(np.median(small[whole] / np.rint(small[whole] / near)))
+    off = np.abs(small / step - np.rint(small / step))
+    return step if np.mean(off < _DEVIATION) > _MOST else None
 
 
 def turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:

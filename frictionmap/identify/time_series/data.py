@@ -8,8 +8,8 @@ import numpy as np
 from ...errors import InputError
 from .. import spring
 from ..signals.phasors import Phasors, amplitude_and_lag, harmonics_of, ratio_error
-from ..signals.plateaus import unclipped_mass
-from ..signals.samples import checked_record, unclipped, within
+from ..signals.plateaus import unclipped
+from ..signals.samples import checked_record, within
 from ..signals.turning_points import resolution
 from ..statistics.levels import FOUND
 from .fit import RecordFit, Samples, fit_record, places_at, samples_of
@@ -51,9 +51,9 @@ def measured_record(
     shakes = checked_record(times, base, "base")[1]
     inside = within(window, times)
     times, channels = times[inside], np.column_stack((shakes, places))[inside]
-    whole = unclipped(channels[:, 0])
+    whole = unclipped(times, channels[:, 0])
     t, data = times[whole], channels[whole]
-    good = unclipped_mass(t, data[:, 1])
+    good = unclipped(t, data[:, 1])
     phasors, tamed = _checked_phasors(t, data, robust, spring.LEAD if elastic else _LEAD)
     samples = samples_of(phasors, t, data[:, 1], tamed[:, 1], good, robust)
     return MeasuredRecord(times, t, data, ~good, _limits(data[:, 1], good), good, phasors, samples)

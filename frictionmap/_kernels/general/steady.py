@@ -460,6 +460,8 @@ def solve_from(problem, friction, state, cycles, tolerance, tools, what, settled
     if found.status == REPEATS and settled:
         restore_limits(friction, tools.places)
         copy_motion(memory.start, memory.senses, tools.ring.orbit, tools.ring.orbit_senses)
+        if not unique:  # the last way was not over the whole period
+            go_round(problem, row, friction, found.halves, tools.work, memory, record, False)
         if find_rests(memory, tools.places) > 0:
             found = _settle(problem, friction, state, found, cycles, tolerance, tools)
         elif unique:
@@ -477,6 +479,8 @@ def solve_from(problem, friction, state, cycles, tolerance, tools, what, settled
     halves, multiplier = measure(
         problem, row, friction, found.halves, tools.work, memory, record, tools.ring, what
     )
+    if halves == 0:
+        found = Steady(CHATTERS, 0, found.cycles)
     return found, halves, multiplier
 
 

@@ -45,7 +45,7 @@ def _heads_for(problem, row, halves, contraction, memory, ring):
     """
     if contraction > _STABLE:
         return False
-    far = distance_from_last(memory, ring) / motion_size(problem, row, memory)
+    far = distance_from_last(row, memory, ring) / motion_size(problem, row, memory)
     if contraction < 1.0:
         expected = distance_back(row, memory, ring, 0, halves // base_halves(problem)) / (1.0 - contraction)
         if far > max(_HEADING * expected, RETURNED):
@@ -84,7 +84,7 @@ def _approaches(problem, row, friction, halves, contraction, work, memory, ring,
     put_orbit(memory, ring)
     go_back(memory, ring, 0)
     size = motion_size(problem, row, memory)
-    begin = distance_from_orbit(memory, ring)
+    begin = distance_from_orbit(row, memory, ring)
     enough = max(_NEARER * begin, RETURNED * size)
     returns = _MOST_RETURNS
     if contraction < 1.0:
@@ -97,7 +97,7 @@ def _approaches(problem, row, friction, halves, contraction, work, memory, ring,
         if code != FOLLOWED or not _does_the_same(memory, ring):
             break
         take_end(memory)
-        far = distance_from_orbit(memory, ring)
+        far = distance_from_orbit(row, memory, ring)
         approaches = far <= enough or (count == returns and far <= begin * contraction ** (0.5 * count))
         if approaches:
             break

@@ -100,6 +100,7 @@ class Row(NamedTuple):
     chi: np.ndarray  # (N, M)
     reaction: np.ndarray  # (N, M) h^2/r^2 chi: acceleration of the modes per unit force
     mobility: np.ndarray  # (N, N) chi reaction^T: acceleration in the contacts per unit force
+    yields: np.ndarray  # (N,) what a change of the force of a spring counts as; 0: rigid
     cosines: np.ndarray  # (H, WIDTH) series of cos(n h x)
     sines: np.ndarray  # (H, WIDTH) series of sin(n h x)
     phasors: np.ndarray  # (2, D, H)
@@ -196,7 +197,8 @@ def make_row(problem):
         np.empty(3), np.zeros(1, np.int64), np.empty(modes), np.empty((modes, modes)),
         np.zeros((TERMS, width)), np.zeros((TERMS, width)), np.zeros((modes, width)),
         np.zeros((channels, width)), np.zeros((contacts, width)), np.zeros((contacts, width)),
-        np.empty((contacts, contacts)), np.zeros((harmonics, WIDTH)), np.zeros((harmonics, WIDTH)),
+        np.empty((contacts, contacts)), np.zeros(contacts), np.zeros((harmonics, WIDTH)),
+        np.zeros((harmonics, WIDTH)),
         np.empty((2, channels, harmonics)), np.empty((most * channels, WIDTH)), np.zeros(kept, np.int64),
         np.empty((kept, LONG, modes, padded(size))), np.empty((kept, size, padded(size))),
         np.empty((kept, contacts, padded(size))), _make_parts(problem, kept, most),
@@ -258,6 +260,24 @@ def _set_modes(problem, row, turn):
 
 
 @kernel
+def _set_yields(problem, row):
+    """Fill what a change of the force of a spring counts as beside changes of the modes.
+
+    It is the displacement of a mode that moves the contact as far as the spring and the structure under this
+    force.
+    """
+    square = row.numbers[1] * row.numbers[1]
+    for j in range(problem.spring.size):
+        flexibility, share = 0.0, 0.0
+        for m in range(problem.squares.size):
+            flexibility += problem.chi[j, m] * problem.chi[j, m] / (problem.squares[m] + square)
+            share = max(share, abs(problem.chi[j, m]))
+        row.yields[j] = 0.0
+        if problem.spring[j] != 0.0 and share > 0.0:
+            row.yields[j] = flexibility / ((1.0 + problem.spring[j] * flexibility) * share)
+
+
+@kernel
 def _fill_channels(problem, row, tau, series, first):
     """Fill the series of the channels from the phase tau on, into `series` from row `first` on."""
     channels = problem.push.shape[1]
@@ -291,6 +311,7 @@ def set_row(problem, i, row):
             row.mobility[a, b] = 0.0
             for m in range(modes):
                 row.mobility[a, b] += problem.chi[a, m] * row.reaction[b, m]
+    _set_yields(problem, row)
     _set_waves(problem, row)
     for part in range(2):
         for d in range(problem.push.shape[1]):

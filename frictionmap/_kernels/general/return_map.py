@@ -226,15 +226,25 @@ def motion_size(problem, row, memory):
 
 
 @kernel
+def largest_difference(row, senses, state, other):
+    """Largest difference of two states with a pattern, in displacements and velocities of the modes."""
+    off = 0.0
+    for i in range(state.shape[1]):
+        for part in range(2):
+            off = max(off, abs(state[part, i] - other[part, i]))
+    for j in range(senses.size):
+        if senses[j] == 0:  # else its force is given
+            off = max(off, row.yields[j] * abs(state[2, j] - other[2, j]))
+    return off
+
+
+@kernel
 def return_distance(problem, row, memory):
     """Largest change of the state, over its size; infinite if the pattern changed."""
     for j in range(memory.senses.size):
         if memory.senses[j] != memory.end_senses[j]:
             return math.inf
-    off = 0.0
-    for m in range(problem.push.shape[0]):
-        for part in range(2):
-            off = max(off, abs(memory.end[part, m] - memory.start[part, m]))
+    off = largest_difference(row, memory.senses, memory.end, memory.start)
     return off / motion_size(problem, row, memory)
 
 
@@ -333,4 +343,6 @@ def take_step(problem, row, memory):
     for j in range(memory.senses.size):
         if problem.spring[j] != 0.0:
             memory.start[2, j] += memory.right[2 * modes + j]
+            if memory.senses[j] == 0:
+                step = max(step, row.yields[j] * abs(memory.right[2 * modes + j]))
     return step / size

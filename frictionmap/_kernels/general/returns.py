@@ -9,7 +9,7 @@ from ..compiler import entry, kernel
 from ..long_periods import LONGEST_RECURRENCE, RETURNED_AFTER_LONG
 from .follow import COUNT_ROWS
 from .problem import padded
-from .return_map import base_halves, copy_motion, steady_period
+from .return_map import base_halves, copy_motion, largest_difference, steady_period
 
 #: Returns one after the other that a long period is recognised by.
 _IN_A_ROW = 4
@@ -75,13 +75,11 @@ def distance_back(row, memory, ring, ago, back):
     for j in range(memory.senses.size):
         if ring.senses[now, j] != ring.senses[then, j]:
             return math.inf
-    off = 0.0
     size = row.numbers[2]
     for part in range(2):
         for i in range(memory.start.shape[1]):
-            off = max(off, abs(ring.states[now, part, i] - ring.states[then, part, i]))
             size = max(size, abs(ring.states[now, part, i]))
-    return off / size
+    return largest_difference(row, ring.senses[now], ring.states[now], ring.states[then]) / size
 
 
 @kernel
@@ -117,19 +115,9 @@ def long_recurrence(row, memory, ring, base):
 
 
 @kernel
-def _distance(memory, state):
-    """Largest difference of the displacements and velocities in `memory.start` from those of a state."""
-    off = 0.0
-    for part in range(2):
-        for i in range(state.shape[1]):
-            off = max(off, abs(state[part, i] - memory.start[part, i]))
-    return off
-
-
-@kernel
-def distance_from_last(memory, ring):
+def distance_from_last(row, memory, ring):
     """Largest difference of the state in `memory.start` from the last one kept."""
-    return _distance(memory, ring.states[(ring.count[0] - 1) % _KEPT])
+    return largest_difference(row, memory.senses, ring.states[(ring.count[0] - 1) % _KEPT], memory.start)
 
 
 @kernel
@@ -148,6 +136,6 @@ def take_orbit(memory, ring):
 
 
 @kernel
-def distance_from_orbit(memory, ring):
+def distance_from_orbit(row, memory, ring):
     """Largest difference of the state in `memory.start` from the steady state kept."""
-    return _distance(memory, ring.orbit)
+    return largest_difference(row, memory.senses, ring.orbit, memory.start)

@@ -10,7 +10,7 @@ local extremum of the samples.
 
 import numpy as np
 
-from ..general.held import load_orders
+from ..general.held import orders_of
 from ..general.problem import springs
 from ..model.held_structure import complex_frequencies
 from ..model.system import System
@@ -66,7 +66,7 @@ def stick_poles(system: System) -> np.ndarray:
     else:
         held = general.vectors[~general.elastic]
         stiffness = modes.stiffness + (general.vectors.T * springs(general)) @ general.vectors
-        orders = load_orders(general)
+        orders = orders_of(general)
     p = complex_frequencies(modes.mass, modes.damping, stiffness, held)
     return (p / np.array(orders)[:, np.newaxis]).ravel()
 

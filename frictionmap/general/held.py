@@ -43,7 +43,7 @@ def _linear(
     return matrix, load
 
 
-def load_orders(general: General) -> list[int]:
+def orders_of(general: General) -> list[int]:
     """Orders of the harmonics that move the structure."""
     return sorted({*general.forces, *general.base})
 
@@ -66,7 +66,7 @@ def held_forces_of(
     w = vectors[~elastic].T
     stiffness = system.modes.stiffness + (vectors.T * kt) @ vectors
     forces, motions = {}, {}
-    for order in load_orders(general):
+    for order in orders_of(general):
         matrix = np.zeros((r.size, n + w.shape[1], n + w.shape[1]), dtype=complex)
         right = np.zeros((r.size, n + w.shape[1]), dtype=complex)
         matrix[:, :n, :n], right[:, :n] = _linear(system, stiffness, order, r)
@@ -110,7 +110,7 @@ def sliding_phasors(system: System, r: np.ndarray) -> np.ndarray:
     general = general_of(system)
     moved = np.array([float(group.base) for group in general.groups])
     found = []
-    for order in load_orders(general):
+    for order in orders_of(general):
         x = _solved(*_linear(system, system.modes.stiffness, order, r))
         with np.errstate(invalid="ignore"):  # an infinite x
             found.append(x @ general.vectors.T - general.base.get(order, 0.0) * moved)
@@ -125,7 +125,7 @@ def belt_limit(system: System, r: np.ndarray) -> np.ndarray:
     general = general_of(system)
     if general.count > 1 or not general.groups[0].first.wall_velocity:
         return np.full(r.size, np.nan)
-    orders = load_orders(general)
+    orders = orders_of(general)
     speeds = []
     for order in orders:
         matrix, load = _linear(system, system.modes.stiffness, order, r)

@@ -150,7 +150,7 @@ class Responses:
 
     @cached_property
     def _twin(self) -> "Responses":
-        """The same of the engine for any number of contacts."""
+        """Responses by the engine for any number of contacts."""
         system = replace(self.system, contacts=contacts_of(self.system))
         return Responses(system, self.response, self.mu, self._threads)
 

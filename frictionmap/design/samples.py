@@ -73,7 +73,7 @@ class SampledPerformance:
 
     @property
     def stuck(self) -> Extreme:
-        """The friction ratio from which so many samples hold that the quantile does."""
+        """The friction ratio from which the quantile of the samples is held."""
         return sorted(curve.stuck for curve in self._curves)[self._rank]
 
     @property

@@ -48,7 +48,7 @@ def settle(problem, friction, start, tools):
     problem, friction, tools = packed(problem), packed(friction), packed(tools)
     row, work, memory, kept = tools.row, tools.work, tools.memory, tools.record
     set_row(problem, 0, row)
-    steady.from_rest(problem, row, friction, start, work, memory, kept)
+    steady.from_rest(problem, row, friction, start, work, memory, kept, record.NOTHING)
     return steady.find(problem, row, friction, 2000.0, 1e-12, work, memory, tools.ring, kept, tools.course)
 
 

@@ -11,10 +11,10 @@ from frictionmap._kernels.compiler.packed import packed
 from frictionmap._kernels.general.fill import Cells, Grid, fill_rows
 from frictionmap._kernels.general.follow import MOVED, STOPS
 from frictionmap._kernels.general.problem import set_row
-from frictionmap._kernels.general.record import RANGES
-from frictionmap._kernels.general.return_map import steady_period
+from frictionmap._kernels.general.record import NOTHING, RANGES
+from frictionmap._kernels.general.return_map import from_rest, steady_period
 from frictionmap._kernels.general.series import Friction
-from frictionmap._kernels.general.steady import REPEATS, find, from_rest, make_tools, measure
+from frictionmap._kernels.general.steady import REPEATS, find, make_tools, measure
 from frictionmap.general.boundaries import friction_lines, rest_states
 from frictionmap.general.held import least_static_friction, stick_scales
 from frictionmap.general.maps import allocate
@@ -40,7 +40,7 @@ def map_row(system: fm.System, r: float, beta: np.ndarray) -> tuple[Callable[[],
     kinetic, static = friction_lines(system, _MU)
     stuck_from = np.searchsorted(beta, stick_scale(system, axis))[np.newaxis]
     starts = rest_states(system, modal, axis)
-    grid = Grid(beta[np.newaxis], kinetic, static, stuck_from, starts, _CYCLES, _TOLERANCE)
+    grid = Grid(beta[np.newaxis], kinetic, static, stuck_from, starts, False, _CYCLES, _TOLERANCE)
     cells = allocate((1, 1, beta.size), general_of(system).count, 0)
     no_masses, cancel = np.empty((0, modal.phi.shape[1])), np.zeros(1, np.uint8)
     return lambda: fill_rows(0, 1, problem, grid, cells, no_masses, cancel), cells
@@ -64,7 +64,7 @@ def _solve_cells(problem, forces, starts, tools, friction, found):
         set_row(problem, k, row)
         for j in range(contacts):
             friction.kinetic[j] = friction.static[j] = forces[k, j]
-        from_rest(problem, row, friction, starts[k], work, memory, record)
+        from_rest(problem, row, friction, starts[k], work, memory, record, NOTHING)
         steady = find(
             problem, row, friction, _CYCLES, _TOLERANCE, work, memory, tools.ring, record, tools.course
         )

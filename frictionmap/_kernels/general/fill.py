@@ -218,12 +218,12 @@ def _place_stuck(problem, grid, m, i, b, friction, tools, place, out):
     problem, grid : Problem, Grid
     m, i, b : indices of mu, r and beta
     friction, tools : Friction, replaced; Tools
-    place : _UNKNOWN, _SLIPS or _STAYS: what is known of the row before this cell
+    place : _UNKNOWN, _SLIPS or _STAYS, of the cells of the row before this one
     out : Cells
 
     Returns
     -------
-    int : what is known of the row
+    int : _SLIPS or _STAYS
     """
     row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
     places, needs = tools.places, tools.needs

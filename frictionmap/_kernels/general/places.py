@@ -58,7 +58,7 @@ _SWEEPS = 100
 
 
 class Places(NamedTuple):
-    """The contacts at rest in a steady state, and what is known of its forces."""
+    """The contacts at rest in a steady state, and its forces."""
 
     rests: np.ndarray  # (N,) int: 1 for contacts that rest permanently
     limits: np.ndarray  # (2, N) kinetic and static friction, where contacts are held

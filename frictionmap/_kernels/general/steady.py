@@ -409,6 +409,9 @@ def _settle(problem, friction, state, found, cycles, tolerance, tools):
         return Steady(REPEATS, halves, found.cycles + more)
     kept, spent = keep_orbit_anew(problem, row, friction, halves, tolerance, work, memory, record, places)
     spent += found.cycles
+    if not kept:  # rounding takes away what hardly moves
+        take_orbit(memory, ring)
+        kept = keep_orbit(problem, row, friction, halves, work, memory, record, places)
     if not kept:
         return Steady(NO_REPEAT, 0, spent)
     from_rest(problem, row, friction, state, work, memory, record, NOTHING)

@@ -49,7 +49,7 @@ def describe_causes(ds: xr.Dataset) -> list[str]:
 
 
 def describe_reduction(ds: xr.Dataset) -> list[str]:
-    """Describe the effect of twice as many modes of a reduced structure."""
+    """Describe the effect of all modes, or many more, of a reduced structure."""
     found = ds.attrs.get("reduction_check")
     return [] if found is None else [f"reduction: {found}"]
 

@@ -184,8 +184,8 @@ class System:
         natural frequencies and compliances must not exceed "allow", by default 0.001; otherwise an InputError
         states how many modes suffice.  Boundaries of continuous motion may need more modes, because higher
         harmonics of friction excite modes above that range: the attribute `reduction_check` of datasets
-        states what changes with twice as many modes.  On a finer mesh these boundaries and the number of
-        stops of a rigid contact change again; the guide on own structures shows why, and recommends a
+        states what changes with all modes, or at least 100.  On a finer mesh these boundaries and the number
+        of stops of a rigid contact change again; the guide on own structures shows why, and recommends a
         contact stiffness.
     rayleigh : sequence of float, optional
         With matrices, instead of damping_ratios and C: [a, b] of C = a M + b K, >= 0, in their units.

@@ -8,7 +8,7 @@ quantity_data    quantities over a cycle: their positions in the results of the 
 quantity_limits  values that kernels do not compute: r = 0, resonances without a load
 cells            the data of cells, and the jobs that fill them
 maps             cells in parallel: which of them are decided by formula, progress
-refinement       change of the map of a reduced structure with twice as many modes
+refinement       change of the map of a reduced structure with all modes or many more
 sweep            `sweep`: maps of one system, or of many along further axes
 curves           `curves`: response curves over frequency
 scattered        cells at a list of points (r, beta)

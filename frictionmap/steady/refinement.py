@@ -1,4 +1,4 @@
-"""Regimes of a reduced structure on a coarse map, against those with twice as many modes."""
+"""Regimes of a reduced structure on a coarse map, against those with all modes or many more."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -72,7 +72,7 @@ def sweep(
 
         With units also `frequency(r)` [Hz], `friction_force(beta)` [N], and every quantity in m, N or J in
         addition to its ratio, such as `contact_amplitude_m` and `beta_lim_N`.  For a reduced structure the
-        attribute `reduction` gives its errors, and `reduction_check` what changes with twice as many modes.
+        attribute `reduction` gives its errors, and `reduction_check` what all modes, or many more, change.
 
     Raises
     ------

@@ -82,7 +82,7 @@ class Study:
 
     @property
     def reduction_check(self) -> dict[str, str]:
-        """Effect of twice as many modes of a reduced structure, see `steady.refinement`."""
+        """Effect of all modes, or many more, of a reduced structure, see `steady.refinement`."""
         return reduction_check(self.system, {"mu": self.mu, "r": self.r, "beta": self.beta}, self.solver)
 
     @property

@@ -16,8 +16,9 @@ from .structure import Structure
 _MORE = 8
 _STEP = 1.25
 
-#: Smallest number of modes of the reduction used for comparison.
-_LEAST_REFINED = 8
+#: Smallest number of modes of the reduction used for comparison.  Structures with fewer are compared as a
+#: whole, which is exact.  So many take below a millisecond per frequency.
+_LEAST_REFINED = 100
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +51,7 @@ class Reduction:
 
     @cached_property
     def refined(self) -> "Reduction | None":
-        """Reduction of the structure to twice as many modes, or to all; None if it has all already."""
+        """Reduction to twice as many modes and no fewer than 100, or to all; None if it has all already."""
         modes = min(max(2 * self.asked.modes, _LEAST_REFINED), self.most_modes)
         if modes <= self.asked.modes:
             return None

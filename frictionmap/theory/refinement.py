@@ -1,8 +1,8 @@
-"""Boundaries of a reduced structure against those with twice as many modes: what its reduction may change.
+"""Boundaries of a reduced structure against those with all modes or many more: what its reduction changes.
 
 What a reduction promises (`structures.accuracy`) holds in the range of the load's frequency.  Harmonics of
-the friction force lie above it, and beta_lim follows them.  Twice as many modes estimate by how much: what
-still more modes would change is not seen.
+the friction force lie above it, and beta_lim follows them.  With all modes the change is the error.  Where
+these are too many, what modes beyond those compared with would change is not seen, and may be more.
 """
 
 from dataclasses import replace
@@ -16,7 +16,7 @@ from ..model.system import System
 from .boundary_curves import find_curves
 
 #: Frequencies of an axis at which boundaries are compared, at most.
-_MOST_FREQUENCIES = 120
+_MOST_FREQUENCIES = 500
 
 #: Changes from here on are given in whole per cent: two digits would be a power of ten.
 _WHOLE = 0.995
@@ -43,22 +43,24 @@ class Change(NamedTuple):
 
 
 class BoundaryChanges(NamedTuple):
-    """Changes of the boundaries by twice as many modes, at one mu."""
+    """Changes of the boundaries by more modes, at one mu."""
 
     modes: int
+    all_modes: int  # of the whole structure
     beta_lim: Change
     beta_stick: Change
 
     def words(self) -> str:
         """In words."""
+        among = f"all {self.modes}" if self.modes == self.all_modes else f"{self.modes} of {self.all_modes}"
         return (
-            f"against {self.modes} modes beta_lim changes {self.beta_lim.words()}, beta_stick "
+            f"against {among} modes beta_lim changes {self.beta_lim.words()}, beta_stick "
             f"{self.beta_stick.words()}"
         )
 
 
 def with_more_modes(system: System) -> System | None:
-    """The same system reduced to twice as many modes; None without a reduction, or without more modes.
+    """The same system with all modes or many more; None without a reduction, or without more modes.
 
     Of damping ratios that are given mode by mode further modes have the last one.
     """
@@ -85,6 +87,7 @@ def boundary_changes(system: System, finer: System, r: np.ndarray, mu: float) ->
     own, other = (find_curves(one, some, np.array([mu])) for one in (system, finer))
     return BoundaryChanges(
         finer.reduction.asked.modes,
+        finer.reduction.most_modes,
         _largest(own.beta_lim[0], other.beta_lim[0], some),
         _largest(own.beta_stick[0], other.beta_stick[0], some),
     )

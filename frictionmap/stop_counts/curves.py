@@ -7,6 +7,7 @@ import numpy as np
 from ..model.general import refuse_general
 from ..model.settings import Start
 from ..model.system import System
+from ..theory.boundary_curves import find_curves
 from .beginnings import HALVES, begun, ends, orbits_beside
 from .conditions import DOUBLING, TURN
 from .phases import Phases
@@ -42,6 +43,10 @@ _ALIKE = 3e-5
 
 #: The same next to the ends of curves.
 _NEAR_END = 2e-4
+
+#: Relative distance within which all points of a border are points of beta_lim: Newton's method ends within
+#: this distance of a point, and another border shares single points with beta_lim.
+_SAME = 1e-9
 
 
 class Border(NamedTuple):
@@ -96,7 +101,14 @@ def find_borders(
         if mu > 1.0:
             seeds = _thinned(seeds)
         _add(source, phases, window, narrowed(source, seeds), found)
-    return [piece for curve in found for piece in _pieces(curve)]
+    borders = [piece for curve in found for piece in _pieces(curve)]
+    return [border for border in borders if not _is_beta_lim(system, mu, border)]
+
+
+def _is_beta_lim(system: System, mu: float, border: Border) -> bool:
+    """Whether a border is that of the continuous motion, or of stops that have no length there."""
+    limit = find_curves(system, border.r, np.array([mu])).beta_lim[0]
+    return bool((np.abs(border.beta - limit) <= _SAME * limit).all())
 
 
 def _add(source: Source, phases: Phases, window: Window, seeds: Seeds, found: list[_Curve]) -> None:

@@ -242,3 +242,21 @@ def test_what_is_refused():
         fm.borders(WALL, [0.1, 1.0], [0.1, 1.0], 0.5)
     with pytest.raises(fm.InputError, match="cannot find borders between numbers of stops"):
         fm.borders(fm.System(contact_stiffness=2.0), [0.1, 1.0], [0.1, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("mu", "r", "beta", "kinds"),
+    [
+        (1.0, [0.17, 0.5], [0.05, 1.0], {"graze", "slip-in-stop"}),
+        (1.3, [0.55, 0.6], [0.3, 0.5], {"turn/stop", "fold"}),  # continuous to turn/stop, where a fold begins
+        (1.5, [0.305, 0.336], [0.014, 0.07], {"turn/stop", "fold"}),  # as do stops of no length
+    ],
+)
+def test_boundaries_are_not_among_the_borders(mu, r, beta, kinds):
+    ds = fm.borders(WALL, r, beta, mu)
+    for x, y in zip(ds.border_r.values, ds.border_beta.values, strict=True):
+        known = ~np.isnan(x)
+        ends = fm.boundaries(WALL, x[known], mu=mu)
+        for name in ("beta_lim", "beta_stick"):
+            assert np.abs(y[known] / ends[name].values[0] - 1.0).max() > 1e-6
+    assert kinds <= set(ds.border_kind.values.tolist())

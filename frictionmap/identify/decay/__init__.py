@@ -9,7 +9,8 @@ problem     least squares of a record on the exact decay
 starts      initial estimates of the fit, for each number of half cycles before rest
 fit         the decay nearest to all samples
 wander      a slow wander of the measured zero
-errors      errors where the noise hides the number of half cycles
+rounding    errors that a coarse converter makes, alike in samples at one place
+errors      errors where noise is correlated, or hides the number of half cycles
 free_decay  `free_decay`: from arrays to estimates
 ==========  ========================================================================
 """

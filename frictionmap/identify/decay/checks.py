@@ -19,6 +19,10 @@ from ..signals.turning_points import (
 #: those of a free decay.  Higher harmonics, and friction that is not constant, leave far less of a real one.
 _MISFIT, _MISFIT_SHARE = 10.0, 0.1
 
+#: Correlated noise swings farther than that between samples suggests: turning points are looked for beyond so
+#: many times as much noise, until nearly all of them are half a period apart; but not beyond so few of them.
+_MORE_NOISE, _MOSTLY_REGULAR, _FEW = (2.0, 3.0, 4.0), 0.9, 5
+
 #: Spikes make turning points that are not half a period apart; noise and a mass that is held make few.
 _REGULAR = 0.5
 
@@ -55,8 +59,16 @@ def checked_turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
 
 
 def _turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
-    """Turning points; if many are spikes, those of the record without spikes."""
+    """Turning points; if many are noise or spikes, those beyond more noise, or of a record without spikes."""
     points = turning_points(time, x)
+    for larger in _MORE_NOISE:
+        if points.time.size < _FEW or _share_regular(points) > _MOSTLY_REGULAR:
+            break
+        fewer = turning_points(time, x, larger)
+        if fewer.time.size < _FEW:
+            break
+        if _share_regular(fewer) > _share_regular(points):
+            points = fewer
     if points.time.size < 2 or _share_regular(points) > _REGULAR:
         return points
     calm = turning_points(time, without_spikes(x))

@@ -9,7 +9,7 @@ from ..statistics.correlation import long_inflation
 from ..statistics.least_squares import Problem, Solution, minimise
 from ..statistics.robust import effective_variance
 from .motion import PARAMETERS, Decay, amplitudes, half_period, in_record, is_possible
-from .problem import Record, plain_problem, problem
+from .problem import Record, plain_problem, problem, weighted_problem
 from .starts import improving, starts
 
 #: Sums of squares that differ by less variances of a sample are alike: three standard errors.
@@ -96,13 +96,15 @@ def rounding_variance(record: Record) -> float:
 def sample_variance(record: Record, fit: DecayFit) -> float:
     """The variance of a sample by which slopes give the errors of estimates."""
     if record.outliers is not None:
-        return effective_variance(fit.plain, fit.solution, record.outliers)
+        return effective_variance(
+            weighted_problem(record, fit.n, fit.solution.values), fit.solution, record.outliers
+        )
     return fit.solution.sum / freedom_of(record)
 
 
-def freedom_of(record: Record) -> int:
-    """Samples less unknowns."""
-    return record.time.size - int(record.free.sum())
+def freedom_of(record: Record) -> float:
+    """Samples, by their weights, less unknowns; at least 1."""
+    return max(record.counted - float(record.free.sum()), 1.0)
 
 
 def _fit(record: Record, n: int, start: np.ndarray) -> DecayFit:

@@ -10,7 +10,13 @@ from ...errors import InputError
 from ...units.table import checked_unit, conversion
 from ..signals.plateaus import unclipped
 from ..signals.samples import checked_record, largest_gap, within
-from ..signals.turning_points import TurningPoints, linear_decrement, noise_level, without_spikes
+from ..signals.turning_points import (
+    TurningPoints,
+    linear_decrement,
+    noise_level,
+    resolution,
+    without_spikes,
+)
 from ..statistics.cautions import autocorrelation_warnings, bound_warnings, correlation_warnings
 from ..statistics.estimates import estimates, number, verdict
 from ..statistics.least_squares import Errors
@@ -21,6 +27,7 @@ from .errors import decay_errors, decay_solution
 from .fit import DecayFit, fit_decay, noise_variance
 from .motion import PARAMETERS
 from .problem import DRIFT, X_F, ZETA, Record
+from .rounding import rounding_weights
 from .wander import Search, search
 
 #: Codes of what was found, in order.
@@ -94,8 +101,10 @@ def free_decay(
         given), `residual_rms`, `verdict`, `half_cycles` before rest or the end, `at_rest`, and
         `mu_lower` <= mu < `mu_upper` from where it came to rest and where it did not.  Attribute `warnings`.
         Intervals and bounds of mu also hold for other numbers of half cycles that fit as well within the
-        noise; `standard_error` is that of the best one.  Where the zero wanders slowly, a polynomial of time
-        is fitted beside the decay (`wander_terms`, `wander_rms`); model and residual are of the decay alone.
+        noise; `standard_error` is that of the best one.  They allow for noise that is correlated in time, and
+        for rounding errors of a coarse converter, which samples at one place have in common.  Where the zero
+        wanders slowly, a polynomial of time is fitted beside the decay (`wander_terms`, `wander_rms`); model
+        and residual are of the decay alone.
 
     Raises
     ------
@@ -122,8 +131,7 @@ def free_decay(
     t, data = times[good], places[good]
     points = checked_turning_points(t, without_spikes(data) if loss == "soft_l1" else data)
     outliers = noise_level(data) if loss == "soft_l1" else 0.0
-    record = Record(t, data, held, names, outliers or None)  # exact data have none
-    searched = search(record, points)
+    searched = _searched(Record(t, data, held, names, outliers or None), points)  # exact data have none
     record, fits = searched.record, searched.fits
     fit = fits[0]
     if not held:  # a value that is held may be wrong on purpose
@@ -150,6 +158,15 @@ def free_decay(
     ds.attrs["title"] = "Free decay"
     ds.attrs["warnings"] = "; ".join(_warnings(times, good, searched, found))
     return ds
+
+
+def _searched(record: Record, points: TurningPoints) -> Search:
+    """Fits of a record, once more with other weights if rounding errors are alike where the mass rests."""
+    found = search(record, points)
+    fit = found.fits[0]
+    places = record.x + fit.plain.residuals(fit.solution.values)[0]
+    weights = rounding_weights(record.x, places)
+    return found if weights is None else search(record._replace(weights=weights), points)
 
 
 def checked_known(known: Mapping[str, float], names: tuple[str, ...] = PARAMETERS) -> dict[str, float]:
@@ -267,11 +284,21 @@ def _warnings(time: np.ndarray, good: np.ndarray, searched: Search, found: Error
     if gap := largest_gap(time):
         words.append(f"a gap of {gap:.4g} s in the times, which are used as given")
     pair = np.ix_((ZETA, X_F), (ZETA, X_F))
-    words += autocorrelation_warnings(found) + correlation_warnings(("zeta", "x_F"), found.correlation[pair])
+    record = searched.record
+    words += autocorrelation_warnings(found) if record.weights is None else _rounding(record, found)
+    words += correlation_warnings(("zeta", "x_F"), found.correlation[pair])
     words += _wandering(searched) + _other_counts(searched.fits)
-    names = searched.record.names
+    names = record.names
     at_bound = searched.fits[0].solution.at_bound[: len(names)]
     return words + bound_warnings(names, np.zeros(len(names)), at_bound)
+
+
+def _rounding(record: Record, found: Errors) -> list[str]:
+    """Warn of errors that samples have in common."""
+    return [
+        f"the steps of the converter ({resolution(record.x):.3g}) exceed the noise: samples at rest count as "
+        f"one, and standard errors were multiplied by up to {found.inflation:.3g}"
+    ]
 
 
 def _wandering(searched: Search) -> list[str]:

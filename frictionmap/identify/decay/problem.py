@@ -39,12 +39,24 @@ class Record(NamedTuple):
     wander: np.ndarray | None = (
         None  # shape (samples, terms): slow functions of time that the zero may follow
     )
+    weights: np.ndarray | None = None  # (samples,) of the residuals, below 1 where rounding errors are alike
 
     def thinned(self, most: int) -> "Record":
         """The record with no more samples than `most`, or a few."""
         every = max(1, self.time.size // most)
         wander = None if self.wander is None else self.wander[::every]
-        return self._replace(time=self.time[::every], x=self.x[::every], wander=wander)
+        weights = None if self.weights is None else self.weights[::every]
+        return self._replace(time=self.time[::every], x=self.x[::every], wander=wander, weights=weights)
+
+    @property
+    def counted(self) -> float:
+        """Number of samples, each by the square of its weight."""
+        return float(self.time.size if self.weights is None else self.weights @ self.weights)
+
+    @property
+    def unweighted(self) -> np.ndarray:
+        """Samples that have their full weight, bool (samples,)."""
+        return np.ones(self.time.size, dtype=bool) if self.weights is None else self.weights == 1.0
 
     @property
     def terms(self) -> int:
@@ -82,8 +94,25 @@ def model(record: Record, n: int, values: np.ndarray) -> tuple[np.ndarray, np.nd
 
 def problem(record: Record, n: int, start: np.ndarray) -> Problem:
     """Least squares of all samples on a decay that ends at turning point `n`; outliers have little weight."""
-    plain = plain_problem(record, n, start)
-    return plain if record.outliers is None else softened(plain, record.outliers)
+    full = weighted_problem(record, n, start)
+    return full if record.outliers is None else softened(full, record.outliers)
+
+
+def weighted_problem(record: Record, n: int, start: np.ndarray) -> Problem:
+    """The same with the full weight of outliers."""
+    return weighted(plain_problem(record, n, start), record.weights)
+
+
+def weighted(plain: Problem, weights: np.ndarray | None) -> Problem:
+    """A problem with these weights of its residuals."""
+    if weights is None:
+        return plain
+
+    def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        residual, slopes = plain.residuals(values)
+        return weights * residual, weights[:, np.newaxis] * slopes
+
+    return plain._replace(residuals=residuals)
 
 
 def plain_problem(record: Record, n: int, start: np.ndarray) -> Problem:

@@ -82,7 +82,7 @@ def _wander(record: Record, fit: DecayFit) -> _Wander:
     directions = np.linalg.qr(slopes[:, fitted])[0]
     shares = directions.T @ residual
     left = residual - directions @ shares
-    variance = float(left @ left) / (left.size - shares.size) * long_inflation(left) ** 2
+    variance = float(left @ left) / (record.counted - shares.size) * long_inflation(left) ** 2
     gains = np.cumsum(shares[-basis.shape[1] :] ** 2) / max(variance, rounding_variance(record))
     best = int(np.argmax(gains - _WORTH * np.arange(gains.size)))
     return _Wander(basis[:, : max(best + 1 + _MARGIN, _LEAST)], float(chdtrc(best + 1, gains[best])))

@@ -14,7 +14,8 @@ import xarray as xr
 from ..decay.free_decay import free_decay
 from ..decay.motion import PARAMETERS as DECAY
 from ..decay.motion import Decay, displacement_and_slopes
-from ..decay.problem import half_cycles_of
+from ..decay.problem import half_cycles_of, weighted
+from ..decay.rounding import rounding_weights
 from ..decay.wander import polynomials
 from ..signals.turning_points import noise_level
 from ..statistics.least_squares import Problem, Solution
@@ -75,11 +76,12 @@ def decay_part(label: str, time: object, x: object, unit: str, known: Mapping[st
     floor = np.concatenate(([-np.inf, 0.0, 0.0, -np.inf, -np.inf, -np.inf], -waves))
     lowest = np.concatenate(([start[0] / _RANGE, -0.5, -np.inf, -np.inf, -np.inf, -np.inf], -waves))
     highest = np.concatenate(([start[0] * _RANGE, 0.99, np.inf, np.inf, np.inf, np.inf], waves))
-    problem = Problem(residuals, free, floor, lowest, highest)
+    weights = rounding_weights(data, ds["model"].values)
+    problem = weighted(Problem(residuals, free, floor, lowest, highest), weights)
     sigma, level = float(ds["sigma"].values[0]), noise_level(data)
     values = np.concatenate((start, np.zeros(terms)))
     if loss == "soft_l1" and level > 0.0:
-        at = Solution(values, *residuals(values), np.zeros(values.size, dtype=bool))
+        at = Solution(values, *problem.residuals(values), np.zeros(values.size, dtype=bool))
         sigma = float(np.sqrt(effective_variance(problem, at, level)))
         problem = softened(problem, level)
     return Part(

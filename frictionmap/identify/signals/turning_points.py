@@ -95,10 +95,13 @@ def _common_step(changes: np.ndarray, near: float) -> float | None:
     return step if np.mean(off < _DEVIATION) > _MOST else None
 
 
-def turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
-    """Find turning points where the motion reverses by more than its noise, refined by parabolas."""
+def turning_points(time: np.ndarray, x: np.ndarray, larger: float = 1.0) -> TurningPoints:
+    """Find turning points where the motion reverses by more than its noise, refined by parabolas.
+
+    larger : factor of the noise over that between samples
+    """
     # normal deviates span about 2 sqrt(2 ln n) deviations, give or take one
-    noise = (2.0 * np.sqrt(2.0 * np.log(max(x.size, 2))) + 1.0) * noise_level(x)
+    noise = (2.0 * np.sqrt(2.0 * np.log(max(x.size, 2))) + 1.0) * larger * noise_level(x)
     swing = max(noise, _SHARE * float(np.ptp(x)))
     found = np.array(turns(x, swing), dtype=int)
     if found.size < 2:

@@ -1,21 +1,22 @@
 """From measured data to friction, damping and frequencies, with their errors.
 
-===========  ==========================================================================
-module       what is in it
-===========  ==========================================================================
-tables       files of measured data, and their columns with units
-statistics   least squares, outliers, correlated residuals; estimates with their errors
-parameters   names of parameters to fit, and of those to hold
-spring       the spring in a contact: fitted as a compliance, reported as a stiffness
-signals      records: samples, turning points, harmonics, noise, displacements
-decay        `free_decay`: the free decay of one mass
-response     `forced`, `friction_ratio`: amplitudes and lags of steady states
-time_series  `record`: steady motion of one mass in time, on a measured base
-joint_fit    `joint`: several decays and records at once
-chain        `sweep`: chains of masses without friction, base shaken
-likelihood   `log_likelihood`: the likelihood of the data of a fit, for samplers
-rigs         configurations of rigs, for the command `identify`
-===========  ==========================================================================
+============  ==========================================================================
+module        what is in it
+============  ==========================================================================
+tables        files of measured data, and their columns with units
+statistics    least squares, outliers, correlated residuals; estimates with their errors
+parameters    names of parameters to fit, and of those to hold
+spring        the spring in a contact: fitted as a compliance, reported as a stiffness
+explanations  what explains data that a model does not
+signals       records: samples, turning points, harmonics, noise, displacements
+decay         `free_decay`: the free decay of one mass
+response      `forced`, `friction_ratio`: amplitudes and lags of steady states
+time_series   `record`: steady motion of one mass in time, on a measured base
+joint_fit     `joint`: several decays and records at once
+chain         `sweep`: chains of masses without friction, base shaken
+likelihood    `log_likelihood`: the likelihood of the data of a fit, for samplers
+rigs          configurations of rigs, for the command `identify`
+============  ==========================================================================
 """
 
 from .chain.sweep import sweep

@@ -9,6 +9,11 @@ from ..errors import InputError
 CONTACT_STIFFNESS = "contact_stiffness"
 
 
+#: How channels may differ, and what is held unless that is fitted: they are alike.
+ALIKE = {"delay": 0.0, "gain": 1.0}
+CHANNELS = tuple(ALIKE)
+
+
 def checked_free(
     free: object, known: Collection[str], parameters: Sequence[str], file: bool = False
 ) -> tuple[str, ...] | None:
@@ -60,5 +65,5 @@ def refuse_mu(free: Collection[str] | None, known: dict[str, float]) -> None:
 
 
 def _optional(named: Collection[str]) -> tuple[str, ...]:
-    """Parameters that are neither fitted nor held: of the other kind of contact."""
-    return (CONTACT_STIFFNESS, "mu") if CONTACT_STIFFNESS in named else (CONTACT_STIFFNESS,)
+    """Parameters that are neither fitted nor held: of the other kind of contact, or of unlike channels."""
+    return (*CHANNELS, CONTACT_STIFFNESS, *(("mu",) if CONTACT_STIFFNESS in named else ()))

@@ -35,11 +35,11 @@ def value(ds, name, what="estimate"):
     return float(ds[what].sel(parameter=name))
 
 
-@pytest.mark.parametrize("rig", [ELASTIC, pytest.param(FALLING, marks=pytest.mark.slow)])
-def test_what_everything_free_gives_is_not_called_found(rig):
-    """It is wrong: damping is many times the true one, and of FALLING mu is beyond 2."""
-    ds = fit(rig)
-    assert value(ds, "zeta") > 4.0 * rig.zeta
+@pytest.mark.slow
+def test_what_everything_free_gives_is_not_called_found():
+    """It is wrong: damping is many times the true one, and mu is beyond 2."""
+    ds = fit(FALLING)
+    assert value(ds, "zeta") > 4.0 * FALLING.zeta
     assert float(ds.residual_rms) < 0.06 < 0.05 * float(ds.data.max())
     assert code(ds) == "not_identified"
     words = headline(ds)
@@ -47,22 +47,31 @@ def test_what_everything_free_gives_is_not_called_found(rig):
     assert "found" not in words
     assert "zeta" in words
     assert "x_F" in words
-    assert ("mu" in words.split(" cannot ")[0]) == (rig is FALLING)
+    assert "mu" in words.split(" cannot ")[0]
     for remedy in ("f_n and zeta from a free decay", "mu = 1", "several records together"):
         assert remedy in words
     assert float(ds.model_error) > 10.0
     assert "does not explain the record down to its noise" in ds.warnings
 
 
-def test_with_frequency_damping_and_mu_held_friction_is_found():
-    """Elasticity of the contact makes x_F appear some percent larger; two records come in their order."""
-    frictions = []
-    for x_F in (0.55, 0.84):
-        ds = fit(ELASTIC._replace(x_F=x_F), **HELD)
-        assert code(ds) == "stick_slip"
-        assert value(ds, "x_F") == pytest.approx(x_F, rel=0.04)
-        frictions.append(value(ds, "x_F"))
-    assert frictions[0] < frictions[1]
+@pytest.mark.parametrize("known", [{}, HELD])
+def test_the_spring_of_the_contact_is_found_that_nobody_mentioned(known):
+    """With a rigid contact damping was many times the true one, or friction some percent too large."""
+    ds = fit(ELASTIC, **known)
+    assert code(ds) == "spring_found"
+    assert "explains the data with a spring in the contact (contact_stiffness" in headline(ds)
+    exact = {"f_n": 3.13, "zeta": 0.0055, "x_F": 0.84, "contact_stiffness": 40.0}
+    for name in [name for name in exact if name not in known]:
+        assert abs(value(ds, name) - exact[name]) < 4.0 * value(ds, name, "standard_error"), name
+
+
+def test_a_spring_that_is_not_found_leaves_no_friction_found():
+    """The sum of squares has many least values; the best one is missed, and the verdict says so."""
+    ds = fit(ELASTIC._replace(x_F=0.55), **HELD)
+    assert code(ds) in ("spring_found", "not_explained")
+    if code(ds) == "not_explained":
+        assert "must not be used" in headline(ds)
+    assert value(ds, "x_F", "lower") <= 0.55 <= value(ds, "x_F", "upper")
 
 
 @pytest.mark.slow

@@ -63,6 +63,26 @@ def test_from_a_file_to_a_friction_force(rig, capsys, measured_record):
     assert "stops_per_cycle" in capsys.readouterr().out
 
 
+def test_a_late_channel_is_named_in_the_report_and_can_be_held(rig, capsys, measured_record):
+    """The mass comes 2 samples, 20 ms, late: 7 degrees of the cycle."""
+    time, base, x = measured_record
+    late = time[2:], base[2:], x[:-2]
+    path = rig(late, "f_n = 3.13\nzeta = 0.01")
+    assert main(["identify", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert "the model explains the data with a delay between the channels (delay 0.0" in out
+    assert "and without it does not" in out
+    row = next(line.split() for line in out.splitlines() if line.split()[:1] == ["delay"])
+    assert float(row[1]) == pytest.approx(0.02, abs=0.001)
+    assert row[-1] == "s"
+    assert main(["identify", str(path), "--overwrite", "--set", 'known.delay="20 ms"']) == 0
+    assert "explains" not in capsys.readouterr().out
+    with xr.open_dataset("rig-identify.nc") as ds:
+        assert float(ds.estimate.sel(parameter="delay")) == 0.02
+        friction = ds.sel(parameter="x_F")
+        assert abs(float(friction.estimate) - TRUTH.x_F) < 4.0 * float(friction.standard_error)
+
+
 def test_units_of_the_columns(rig, measured_record):
     """Lengths come in the unit of the mass, what is known is given in mm."""
     time, base, x = measured_record

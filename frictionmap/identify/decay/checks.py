@@ -14,10 +14,7 @@ from ..signals.turning_points import (
     undersampled,
     without_spikes,
 )
-
-#: Residuals so many times as large as the noise between samples, and beyond this share of the motion, are not
-#: those of a free decay.  Higher harmonics, and friction that is not constant, leave far less of a real one.
-_MISFIT, _MISFIT_SHARE = 10.0, 0.1
+from ..statistics.levels import MISFIT, MISFIT_SHARE
 
 #: Correlated noise swings farther than that between samples suggests: turning points are looked for beyond so
 #: many times as much noise, until nearly all of them are half a period apart; but not beyond so few of them.
@@ -90,7 +87,7 @@ def check_misfit(x: np.ndarray, rms: float) -> None:
         The record does not follow a free decay, or no fit of it was found.
     """
     noise = noise_level(x)
-    if rms > _MISFIT * noise and rms > _MISFIT_SHARE * float(np.std(x)):
+    if rms > MISFIT * noise and rms > MISFIT_SHARE * float(np.std(x)):
         raise InputError(
             f"cannot fit x as a free decay: the residuals ({rms:.4g} rms) are far above the noise between "
             f"samples ({noise:.4g}); choose a window of one decay, without gaps, impacts or other motion"

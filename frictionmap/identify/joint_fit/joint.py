@@ -11,6 +11,7 @@ from ...datasets.provenance import system_text
 from ...errors import InputError
 from ...model.system import DAMPING_REFERENCES
 from ...units.table import checked_unit, conversion
+from ..parameters import ALIKE
 from ..statistics.cautions import interval_warnings
 from ..statistics.estimates import estimates, number, usable_errors, verdict
 from ..statistics.least_squares import Errors, Solution, errors, growth, two_sided
@@ -162,11 +163,11 @@ def _part(
 
 
 def _names(fit: JointFit) -> list[str]:
-    """Names of all values; those of drift and wander are empty."""
+    """Names of all values; empty for drift and wander, and for channels that are alike."""
     names = [*SHARED, *[""] * (fit.solution.values.size - len(SHARED))]
     for part, at in zip(fit.parts, places_of(fit.parts), strict=True):
         for name, place in zip(part.names, at, strict=False):
-            if name not in SHARED:
+            if name not in (*SHARED, *ALIKE):
                 names[place] = f"{name}_{part.label}"
     return names
 

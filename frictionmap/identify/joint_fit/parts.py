@@ -17,6 +17,7 @@ from ..decay.motion import Decay, displacement_and_slopes
 from ..decay.problem import half_cycles_of, weighted
 from ..decay.rounding import rounding_weights
 from ..decay.wander import polynomials
+from ..parameters import ALIKE
 from ..signals.turning_points import noise_level
 from ..statistics.least_squares import Problem, Solution
 from ..statistics.robust import effective_variance, softened
@@ -119,8 +120,8 @@ def _of_record(
     held: Mapping[str, float],
 ) -> Part:
     robust = given.samples.scale is not None
-    given, fit = fit_clipped(contact, reference, given, {"mu": 1.0, **held}, robust)
-    problem = problem_of(fit, known)
+    given, fit = fit_clipped(contact, reference, given, {"mu": 1.0, **ALIKE, **held}, robust)
+    problem = problem_of(fit, {**ALIKE, **known})
     part = Part(
         label, PARAMETERS, problem, fit.solution.values, 1.0, 1, 1.0, given, fit, given.samples.time,
         given.samples.x, None,

@@ -59,8 +59,8 @@ _LABEL = Key("label", "name in the results; default: its number", {"type": "stri
              example='"10 N"')  # fmt: skip
 
 _FIT = (
-    Key("free", "parameters to fit; must be all that are not in [known], which is the default; a spring in "
-        "the contact is fitted only if contact_stiffness is named",
+    Key("free", "parameters to fit; must be all that are not in [known], which is the default; "
+        "contact_stiffness, delay and gain may be named, or are fitted where one of them explains the data",
         several({"type": "string"}), example='["f_n", "zeta", "x_F", "X0", "t0", "centre"]',
         words="a list of parameters"),
     Key("drift", "whether to fit a linear drift of the zero", {"type": "boolean"}, False,
@@ -114,6 +114,8 @@ _KNOWN = {
     "beta": ("friction ratio of all sets", "0.2"),
     "mu": ("static over kinetic friction force, >= 1", "1.0"),
     "contact_stiffness": ("stiffness of a spring in the contact over k1; default: rigid", "3.0"),
+    "delay": ("time by which masses are measured later than the base or load; default: 0, s", "0.002"),
+    "gain": ("gain of the channels of masses over that of the base or load; default: 1", "1.02"),
     "x_F": ("kinetic friction force over stiffness, mm", "0.2"),
     "X0": ("amplitude at t0, mm", "9.5"),
     "t0": ("time of the first turning point, s", "0.0"),

@@ -32,7 +32,7 @@ class Rig(NamedTuple):
 #: Units of numbers of [known] that have one; as text they may be in another of its kind.
 KNOWN_UNITS = {
     "f_n": "Hz", "f_k1m1": "Hz", "x_F": "mm", "X0": "mm", "centre": "mm", "offset_x": "mm", "base_mm": "mm",
-    "stiffness": "N/m", "t0": "s",
+    "stiffness": "N/m", "t0": "s", "delay": "s",
 }  # fmt: skip
 
 

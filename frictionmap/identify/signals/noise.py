@@ -30,6 +30,24 @@ class Levels(NamedTuple):
     freedom: int  # degrees of freedom of the least well known of them; 0: of all samples
 
 
+class AtHarmonics(NamedTuple):
+    """Directions of the harmonics among samples, and the noise beside them."""
+
+    columns: np.ndarray  # shape (samples, 1 + 2 H), orthonormal: a constant, then two parts of each harmonic
+    variance: float  # of a sample
+    levels: Levels
+
+    def over_noise(self, values: np.ndarray) -> np.ndarray:
+        """Parts of residuals or slopes along the columns, over the noise there, shape (1 + 2 H, ...)."""
+        level = self.levels.of_harmonic
+        sizes = np.sqrt(self.variance) * np.concatenate((level[:1], np.repeat(level[1:], 2)))
+        return ((self.columns.T @ values).T / sizes).T
+
+    def square(self, residual: np.ndarray) -> float:
+        """Chi square of residuals at the harmonics, without the constant; 0 if there is no noise."""
+        return float(np.sum(self.over_noise(residual)[1:] ** 2)) if self.variance > 0.0 else 0.0
+
+
 def slow_waves(time: np.ndarray, frequency: float) -> np.ndarray:
     """Orthonormal waves below half the base's frequency without mean and drift, shape (samples, waves).
 
@@ -80,6 +98,20 @@ def _typical(power: np.ndarray) -> float:
     return float(np.exp(np.mean(np.log(power)) + np.euler_gamma))
 
 
+def at_harmonics(
+    time: np.ndarray, residual: np.ndarray, frequency: float, harmonics: int, waves: int
+) -> AtHarmonics:
+    """What a fit leaves at the harmonics, and the noise beside them.
+
+    residual : shape (samples,), of the fit, drift and wander taken out
+    waves : how many slow waves were fitted beside the drift
+    """
+    columns = harmonic_columns(time, frequency, harmonics)
+    rest = residual - columns @ (columns.T @ residual)
+    variance = float(rest @ rest) / (rest.size - columns.shape[1] - waves - 1)
+    return AtHarmonics(columns, variance, noise_levels(time, rest, frequency, harmonics))
+
+
 def noise_of_fit(
     time: np.ndarray,
     residual: np.ndarray,
@@ -97,15 +129,11 @@ def noise_of_fit(
     unknowns : fitted parameters, without a constant, drift and wander
     waves : how many slow waves were fitted beside the drift
     """
-    columns = harmonic_columns(time, frequency, harmonics)
-    parts = columns.T @ residual
-    rest = residual - columns @ parts
-    variance = float(rest @ rest) / (rest.size - columns.shape[1] - waves - 1)
-    levels = noise_levels(time, rest, frequency, harmonics)
-    left = np.sum(parts[1:].reshape(harmonics, 2) ** 2, axis=1) / levels.of_harmonic[1:] ** 2
+    lines = at_harmonics(time, residual, frequency, harmonics, waves)
+    columns, variance, levels = lines
     freedom = 2 * harmonics - unknowns
-    square = float(left.sum()) / variance if variance > 0.0 else 0.0
-    wrong = freedom > 0 and bool(chdtrc(freedom, square) < _CHANCE_OF_MODEL)
+    square = lines.square(residual)
+    wrong = is_wrong(square, freedom)
     model_error = float(np.sqrt(square / freedom)) if wrong else 1.0
     growth = levels.of_harmonic * model_error
     few = [count for count in (levels.freedom, freedom if wrong else 0) if count]
@@ -115,6 +143,14 @@ def noise_of_fit(
     excess = np.sqrt(growth**2 - 1.0)
     by_column = np.concatenate((excess[:1], np.repeat(excess[1:], 2)))
     return Noise(variance, columns * by_column, min(few, default=residual.size - unknowns)), model_error
+
+
+def is_wrong(square: float, freedom: int) -> bool:
+    """Whether a model leaves more at the harmonics than noise does.
+
+    square : of all parts of the harmonics, over the noise
+    """
+    return freedom > 0 and bool(chdtrc(freedom, square) < _CHANCE_OF_MODEL)
 
 
 def harmonic_columns(time: np.ndarray, frequency: float, harmonics: int) -> np.ndarray:

@@ -80,19 +80,21 @@ class Errors(NamedTuple):
     inflation: float  # of the errors, as residuals are correlated
 
 
-def minimise(problem: Problem, start: np.ndarray) -> Solution:
+def minimise(problem: Problem, start: np.ndarray, most: int | None = None) -> Solution:
     """The least sum with no parameter below its bound.
+
+    most : evaluations of a fit that only leads to starting values; by default so many that all fits end
 
     A parameter below its bound is held there, and the others are fitted again; of several ways to
     hold some of them the least sum wins.
     """
-    free_fit = _fit(problem, start, problem.free)
+    free_fit = _fit(problem, start, problem.free, most)
     candidates = _below(problem, free_fit)
     if not candidates.any():
         return free_fit
     inside = np.maximum(free_fit.values, problem.floor)
     while True:
-        held_fits = [_hold(problem, inside, held) for held in _subsets(candidates)]
+        held_fits = [_hold(problem, inside, held, most) for held in _subsets(candidates)]
         valid = [fit for fit in held_fits if not _below(problem, fit).any()]
         if valid:
             return min(valid, key=lambda fit: fit.sum)
@@ -208,7 +210,7 @@ def undetermined(problem: Problem, best: Solution, rank: float = _RANK) -> tuple
     return free[taking_part], len(blind)
 
 
-def _fit(problem: Problem, start: np.ndarray, free: np.ndarray) -> Solution:
+def _fit(problem: Problem, start: np.ndarray, free: np.ndarray, most: int | None = None) -> Solution:
     """The least sum over some parameters, bounds from below not heeded; infinite if there is no model."""
     values = start.astype(float)
     last: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}  # residuals and slopes are asked for one by one
@@ -236,6 +238,7 @@ def _fit(problem: Problem, start: np.ndarray, free: np.ndarray) -> Solution:
             xtol=1e-12,
             ftol=1e-14,
             gtol=1e-14,
+            max_nfev=most,
         )
         values[free] = found.x
     residual, slopes = problem.residuals(values)
@@ -251,8 +254,8 @@ def _no_model(values: np.ndarray, samples: int) -> Solution:
     )
 
 
-def _hold(problem: Problem, start: np.ndarray, held: np.ndarray) -> Solution:
-    fit = _fit(problem, np.where(held, problem.floor, start), problem.free & ~held)
+def _hold(problem: Problem, start: np.ndarray, held: np.ndarray, most: int | None) -> Solution:
+    fit = _fit(problem, np.where(held, problem.floor, start), problem.free & ~held, most)
     return fit._replace(at_bound=held)
 
 

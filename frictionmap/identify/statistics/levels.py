@@ -12,3 +12,7 @@ CORRELATED = 0.95
 #: Errors from residuals are found again and again until they change by less than this share, and so often at
 #: most.
 SETTLED, ROUNDS = 1e-3, 20
+
+#: Residuals so many times as large as the noise, and beyond this share of the motion, are not those of the
+#: motion that was to be fitted.  Higher harmonics, and friction that is not constant, leave far less.
+MISFIT, MISFIT_SHARE = 10.0, 0.1

@@ -67,7 +67,7 @@ def _limits(x: np.ndarray, good: np.ndarray) -> tuple[float, float]:
 
 def fit_clipped(
     contact: str, damping_reference: str, given: MeasuredRecord, known: Mapping[str, float], robust: bool,
-    elastic: bool = False,
+    elastic: bool = False, thorough: bool = True,
 ) -> tuple[MeasuredRecord, RecordFit]:  # fmt: skip
     """Fit a steady motion as by `fit_record`, without what happens beside the ends of a measuring range.
 
@@ -75,7 +75,11 @@ def fit_clipped(
     motion with them.  So samples are left out by the fitted motion, which has no noise, and the motion is
     fitted anew.  Its harmonics then take the place of the clipped ones, where the search begins.
     """
-    fit = fit_record(contact, damping_reference, given.phasors, given.samples, known, elastic)
+
+    def fitted(to: MeasuredRecord) -> RecordFit:
+        return fit_record(contact, damping_reference, to.phasors, to.samples, known, elastic, thorough)
+
+    fit = fitted(given)
     if not given.clipped.any():
         return given, fit
     for _ in range(_REFITS):
@@ -83,7 +87,7 @@ def fit_clipped(
         if inside.sum() < _FEWEST or (inside == given.good).all():
             break
         given = _filled(given, fit, inside, robust)
-        fit = fit_record(contact, damping_reference, given.phasors, given.samples, known, elastic)
+        fit = fitted(given)
     return given, fit
 
 

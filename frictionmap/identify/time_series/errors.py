@@ -3,6 +3,9 @@
 What is fitted, p, has the covariance s^2 (J^T V^-1 J)^-1, with V as in `fit`.  Errors b of the base's
 harmonics move it by -(J^T V^-1 J)^-1 J^T V^-1 J_b b, and the noise of the mass moves p and X_1 together.
 
+Where the gain of x over the base is fitted, lengths are in the unit of x; their intervals also hold those in
+the unit of the base, which are smaller by the gain.
+
 Where the data do not ask for mu > 1, estimates are those with mu = 1; their intervals reach as far as they
 would move if mu were at the upper end of its own.  So where a spring in the contact is as stiff as can be:
 estimates are those with a rigid contact.
@@ -15,7 +18,7 @@ import numpy as np
 from ..signals.phasors import Phasors, first_harmonics
 from ..statistics.least_squares import Errors, errors, growth, two_sided
 from .fit import RecordFit, base_errors
-from .motion import F_N, LAW, MU, OFFSET, PARAMETERS, X_F, ZETA
+from .motion import F_N, GAIN, LAW, MU, OFFSET, PARAMETERS, X_F, ZETA
 from .static_friction import FITTED, IDLE, ONE, highest, interval, per_square
 
 #: What follows from the parameters and the phasors.
@@ -41,7 +44,9 @@ def derived_values(fit: RecordFit, phasors: Phasors) -> np.ndarray:
     """beta, lag [deg], amplitude ratio and stops per cycle."""
     base, mass = phasors.values[0, 1], phasors.values[1, 1]
     lag = -np.degrees(np.angle(mass / base))
-    return np.array([fit.values[X_F] / abs(base), lag, abs(mass / base), float(fit.motion.stops)])
+    return np.array(
+        [fit.values[X_F] / (fit.values[GAIN] * abs(base)), lag, abs(mass / base), float(fit.motion.stops)]
+    )
 
 
 def record_errors(fit: RecordFit, phasors: Phasors, time: np.ndarray, used: np.ndarray) -> Errors:
@@ -69,17 +74,31 @@ def record_errors(fit: RecordFit, phasors: Phasors, time: np.ndarray, used: np.n
         most, moved = highest(fit.with_law, fit.solution, fit.noise, LAW)
         lower[LAW], upper[LAW] = (0.0, most) if elastic else (lower[LAW], 1.0 + float(np.sqrt(most)))
         moves = np.concatenate((moved[:size], np.zeros(len(DERIVED))))
-        moves[size] = moved[X_F] / abs(phasors.values[0, 1])  # beta
+        moves[size] = moved[X_F] / (fit.values[GAIN] * abs(phasors.values[0, 1]))  # beta
         lower, upper = lower + np.minimum(moves, 0.0), upper + np.maximum(moves, 0.0)
     elif fit.static == IDLE:
         upper[MU] = _mu_of_first_stop(fit)
     elif fit.static == FITTED and not elastic:
         lower[MU], upper[MU] = interval(float(fit.solution.values[MU]), reach * of_law)
+    if fit.free[GAIN]:
+        _allow_for_both_units(lower, upper, values, abs(phasors.values[0, 1]))
     lower[_POSITIVE] = np.maximum(lower[_POSITIVE], 0.0)
     return found._replace(
         standard_error=deviation, lower=lower, upper=upper, correlation=correlation,
         inflation=float(growth(fit.problem, fit.solution, fit.noise)[:OFFSET].max()),
     )  # fmt: skip
+
+
+def _allow_for_both_units(lower: np.ndarray, upper: np.ndarray, values: np.ndarray, base: float) -> None:
+    """Lengths in the unit of x or of the base: the record does not show which of the channels is wrong.
+
+    base : amplitude of the first harmonic
+    """
+    beta = len(PARAMETERS)
+    lower[X_F] = min(lower[X_F], lower[beta] * base)  # x_F/G
+    upper[X_F] = max(upper[X_F], upper[beta] * base)
+    ends = np.outer([lower[OFFSET], upper[OFFSET]], 1.0 / np.array([1.0, values[GAIN]]))
+    lower[OFFSET], upper[OFFSET] = ends.min(), ends.max()
 
 
 def _mu_of_first_stop(fit: RecordFit) -> float:
@@ -119,8 +138,9 @@ def _add_derived(transfer: np.ndarray, fit: RecordFit, phasors: Phasors) -> None
     of_base = [size + 3, size + 3 + fit.mass.base.size]  # Re Y_1, Im Y_1, after the means
     beta, lag, ratio, _ = range(size, size + len(DERIVED))
     along = np.array([base.real, base.imag]) / abs(base) ** 2
-    transfer[beta] = transfer[X_F] / abs(base)
-    transfer[beta, of_base] -= fit.values[X_F] / abs(base) * along
+    friction, gain = fit.values[X_F], fit.values[GAIN]
+    transfer[beta] = (transfer[X_F] - friction / gain * transfer[GAIN]) / (gain * abs(base))
+    transfer[beta, of_base] -= friction / (gain * abs(base)) * along
     transfer[lag, of_base] = np.degrees(np.array([-base.imag, base.real]) / abs(base) ** 2)
     transfer[lag, of_mass] = -np.degrees(np.array([-mass.imag, mass.real]) / abs(mass) ** 2)
     transfer[ratio, of_mass] = np.array([mass.real, mass.imag]) / (abs(mass) * abs(base))

@@ -11,12 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..parameters import CONTACT_STIFFNESS
 from ..signals.noise import noise_of_fit
 from ..signals.phasors import Phasors, scatter_of
 from ..spring import SOFTEST
 from ..statistics.least_squares import Noise, Problem, Solution, minimise
 from ..statistics.robust import pseudo_residuals
 from .motion import (
+    DELAY,
     F_N,
     LAW,
     MU,
@@ -32,7 +34,7 @@ from .motion import (
     places_and_slopes,
     shaken,
 )
-from .starts import starts
+from .starts import other_springs, starts
 from .static_friction import FITTED, IDLE, KNOWN, ONE, is_asked_for
 
 #: Number of starts that are followed, that with a spring where the first ones leave more than noise, and of
@@ -40,6 +42,11 @@ from .static_friction import FITTED, IDLE, KNOWN, ONE, is_asked_for
 _FOLLOWED = 4
 _MORE_FOLLOWED = 24
 _SAMPLES = 600
+
+#: Evaluations of the fit from one start, and of that of all samples with a spring or of a model that nobody
+#: asked for: those that end near the record take up to 50.  A stiff spring whose swings make the sum rough,
+#: or a model far from the record, takes no end of them.
+_EVALUATIONS, _EVALUATIONS_OF_ALL = 60, 120
 
 #: Fits to pseudo-values: each is a step of Newton's method with the mean slope, so few are needed.
 _ROUNDS = 8
@@ -50,9 +57,12 @@ _SETTLED = 1e-3
 #: The natural frequency lies within this factor of a start.
 _RANGE = 1.5
 
-#: Where straight lines go on below the floors, and where motions end: f_n apart.
-_BELOW = np.array([0.0, -0.5, -np.inf, -1.0, -np.inf])
-_HIGHEST = np.array([0.0, 10.0, np.inf, 16.0, np.inf])
+#: A delay is looked for up to this share of a cycle, and a gain up to this factor.
+_DELAY, _GAIN = 0.25, 2.0
+
+#: Where straight lines go on below the floors, and where motions end: f_n and the delay apart.
+_BELOW = np.array([0.0, -0.5, -np.inf, -1.0, 0.0, 1.0 / _GAIN, -np.inf])
+_HIGHEST = np.array([0.0, 10.0, np.inf, 16.0, 0.0, _GAIN, np.inf])
 
 
 class Whitening(NamedTuple):
@@ -138,11 +148,13 @@ def samples_of(
 
 def fit_record(
     contact: str, damping_reference: str, phasors: Phasors, samples: Samples, known: Mapping[str, float],
-    elastic: bool = False,
+    elastic: bool = False, thorough: bool = True,
 ) -> RecordFit:  # fmt: skip
     """The least sum over all samples, with mu = 1 unless it is known or the data ask for more.
 
     elastic : whether the contact has a spring, whose compliance is fitted unless it is known
+    thorough : whether fits may take any number of evaluations, and more starts are followed where the first
+        ones, with a spring, leave more than noise
 
     Where there may be outliers, pseudo-values from the last fit take the place of x (Huber and Ronchetti,
     Robust Statistics, 2009, section 7.8): this converges to the estimate of soft_l1, and the errors are those
@@ -156,27 +168,39 @@ def fit_record(
     near = _nearest(coarse, samples.near[few], held, candidates[:_FOLLOWED])
     scatter = float(np.sqrt(near.sum / samples.near[few].size))
     begin = _begin(near, samples)
-    at_one = _fit_near(mass, phasors, samples, known, begin, scatter, begin)
-    if elastic and at_one.model_error > 1.0:
-        begin = _begin(_nearest(coarse, samples.near[few], known, candidates[:_MORE_FOLLOWED]), samples)
-        other = _fit_near(mass, phasors, samples, known, begin, scatter, begin)
+    most = None if thorough and not elastic else _EVALUATIONS_OF_ALL
+    at_one = _fit_near(mass, phasors, samples, known, begin, scatter, begin, most)
+    for everywhere in _looks(known, thorough) if elastic else ():
+        if at_one.model_error == 1.0:
+            break
+        x = samples.near[few]
+        others = candidates if everywhere else other_springs(coarse, x, at_one.values)[:_FOLLOWED]
+        begin = _begin(_nearest(coarse, x, known, others[:_MORE_FOLLOWED]), samples)
+        other = _fit_near(mass, phasors, samples, known, begin, scatter, begin, most)
         at_one = min(at_one, other, key=lambda fit: float(np.sum(fit.residual**2)))
     starting = [at_one.solution.values]
     with_mu = not elastic and "mu" not in known
     if with_mu and at_one.model_error > 1.0:  # else nothing far away can be much nearer
         candidates = starts(contact, damping_reference, phasors, known)
         starting.append(_begin(_nearest(coarse, samples.near[few], known, candidates[:_FOLLOWED]), samples))
-    fit = _with_static(at_one, phasors, starting)
+    fit = _with_static(at_one, phasors, starting, most)
     # without outliers once more if mu is fitted: what errors of the base do was computed for mu = 1
     for _ in range(_ROUNDS if samples.scale else int(fit.static == FITTED)):
         again = _with_pseudo_values(fit)
         change = np.abs(again.fitted - fit.samples.fitted).max()
         scatter = float(np.sqrt(fit.solution.sum / again.x.size))
-        at_one = _fit_near(mass, phasors, again, known, at_one.solution.values, scatter, fit.solution.values)
-        fit = _with_static(at_one, phasors, [fit.solution.values])
+        values = at_one.solution.values, scatter, fit.solution.values
+        at_one = _fit_near(mass, phasors, again, known, *values, most)
+        fit = _with_static(at_one, phasors, [fit.solution.values], most)
         if samples.scale and change < _SETTLED * samples.scale:
             break
     return fit
+
+
+def _looks(known: Mapping[str, float], thorough: bool) -> list[bool]:
+    """Where springs are looked for that leave no more than noise: everywhere, or beside the best one."""
+    beside = [] if CONTACT_STIFFNESS in known else [False, False]
+    return [*beside, True, *beside] if thorough else beside
 
 
 def _with_pseudo_values(fit: RecordFit) -> Samples:
@@ -196,24 +220,26 @@ def _fit_near(
     start: np.ndarray,
     scatter: float,
     about: np.ndarray,
+    most: int | None,
 ) -> RecordFit:
     """The least sum near a start, with mu = 1 unless it is known.
 
     scatter : standard deviation of a sample, without what errors of the base make
     about : values of the motion that errors of the base move
+    most : evaluations
     """
     held = known if mass.elastic else {"mu": 1.0, **known}
     by_base = base_slopes(mass, outer(about[: len(PARAMETERS)], mass.elastic))
     whitening = _whitening(by_base, base_errors(mass, phasors), scatter)
     with_law = _problem(mass, samples, _free(known, samples, mass.elastic), start, whitening)
     problem = with_law._replace(free=_free(held, samples, mass.elastic))
-    solution = minimise(problem, start)
+    solution = minimise(problem, start, most)
     found = motion(mass, outer(solution.values[: len(PARAMETERS)], mass.elastic))
     noise = noise_of_record(phasors, samples, problem, solution)
     return RecordFit(mass, samples, problem, with_law, solution, *noise, whitening, by_base, found, KNOWN)
 
 
-def _with_static(fit: RecordFit, phasors: Phasors, begin: list[np.ndarray]) -> RecordFit:
+def _with_static(fit: RecordFit, phasors: Phasors, begin: list[np.ndarray], most: int | None) -> RecordFit:
     """The fit with mu free, if it is not known and the data ask for it; else the fit as it is.
 
     A spring is free to begin with, and the contact is rigid where that explains the data as well.
@@ -225,7 +251,7 @@ def _with_static(fit: RecordFit, phasors: Phasors, begin: list[np.ndarray]) -> R
         rigid = _rigid(fit, phasors)
         stiff = fit.solution.at_bound[LAW] or rigid.solution.sum <= fit.solution.sum
         return rigid if stiff else fit._replace(static=FITTED)
-    solution = min((minimise(task, start) for start in begin), key=lambda found: found.sum)
+    solution = min((minimise(task, start, most) for start in begin), key=lambda found: found.sum)
     found = motion(fit.mass, outer(solution.values[: len(PARAMETERS)]))
     noise, model_error = noise_of_record(phasors, fit.samples, task, solution)
     gain = fit.solution.sum - solution.sum
@@ -292,7 +318,8 @@ def _nearest(
     free, elastic = _free(known, samples, mass.elastic), mass.elastic
     fitted = [inner(start, elastic) for start in candidates]
     problems = [(_problem(mass, samples, free, start), start) for start in fitted]
-    return min((minimise(_within(task), start) for task, start in problems), key=lambda found: found.sum)
+    found = (minimise(_within(task), start, _EVALUATIONS) for task, start in problems)
+    return min(found, key=lambda one: one.sum)
 
 
 def _free(known: Mapping[str, float], samples: Samples, elastic: bool) -> np.ndarray:
@@ -342,6 +369,7 @@ def _problem(
     waves = np.full(samples.slow.shape[1], np.inf)
     lowest, highest = np.concatenate((_BELOW, -waves)), np.concatenate((_HIGHEST, waves))
     lowest[F_N], highest[F_N] = start[F_N] / _RANGE, start[F_N] * _RANGE
+    lowest[DELAY], highest[DELAY] = -_DELAY / mass.frequency, _DELAY / mass.frequency
     if mass.elastic:
         highest[LAW] = SOFTEST
     problem = Problem(plain, free, np.concatenate((mass.floor, -waves)), lowest, highest)

@@ -10,6 +10,10 @@ the ground.  In q = x - offset_x, less y where the wall moves, all four are one 
     wall still: G_n = Y_n,   moving: G_n = ((n r)^2 - 2 i n zeta r) Y_n,   relative to the ground
 
 With a spring in the contact kt (q - p) takes the place of x_F sgn(q'), and p moves only where that is +-x_F.
+
+The channels may differ in time and gain: x then follows the base as it was `delay` before, times `gain`,
+which is a base G Y_n e^{-i n w_b d}, w_b = 2 pi f.  Lengths such as x_F are then in the unit of x: those in
+the unit of the base are x_F/G.
 """
 
 from typing import NamedTuple
@@ -17,16 +21,16 @@ from typing import NamedTuple
 import numpy as np
 
 from ...general.one_mass import steady_motion
-from ..parameters import CONTACT_STIFFNESS
+from ..parameters import ALIKE, CHANNELS, CONTACT_STIFFNESS
 from ..signals.phasors import Phasors, harmonics_at
 from ..spring import STIFFEST
 
-PARAMETERS = ("f_n", "zeta", "x_F", "mu", "offset_x")
-F_N, ZETA, X_F, MU, OFFSET = range(len(PARAMETERS))
+PARAMETERS = ("f_n", "zeta", "x_F", "mu", *CHANNELS, "offset_x")
+F_N, ZETA, X_F, MU, DELAY, GAIN, OFFSET = range(len(PARAMETERS))
 
 #: Of a contact with a spring mu is 1, and the spring has its place; its compliance, k1/kt, stands for it.
 LAW = MU
-WITH_SPRING = ("f_n", "zeta", "x_F", CONTACT_STIFFNESS, "offset_x")
+WITH_SPRING = (*PARAMETERS[:MU], CONTACT_STIFFNESS, *PARAMETERS[MU + 1 :])
 
 CONTACTS = ("fixed-wall", "joined-base-wall")
 
@@ -37,8 +41,8 @@ BASE_HARMONICS = 5
 _CYCLES = 150
 
 #: What is fitted cannot be below; see `inner`.
-FLOOR = np.array([-np.inf, 0.0, 0.0, 0.0, -np.inf])
-_FLOOR_WITH_SPRING = np.array([-np.inf, 0.0, 0.0, STIFFEST, -np.inf])
+FLOOR = np.array([-np.inf, 0.0, 0.0, 0.0, -np.inf, -np.inf, -np.inf])
+_FLOOR_WITH_SPRING = np.array([-np.inf, 0.0, 0.0, STIFFEST, -np.inf, -np.inf, -np.inf])
 
 #: Steps of the difference quotients, of (mu - 1)^2 their square: steady states are exact to some 1e-12.
 _STEP = 1e-5
@@ -97,6 +101,14 @@ def moved(mass: Shaken, change: np.ndarray) -> Shaken:
     return mass._replace(base=mass.base + change)
 
 
+def corrected(mass: Shaken, delay: float, gain: float) -> Shaken:
+    """The base that the mass follows: as it was `delay` [s] before, times `gain`."""
+    if (delay, gain) == (ALIKE["delay"], ALIKE["gain"]):  # to the bit
+        return mass
+    turn = 2.0 * np.pi * mass.frequency * delay * np.arange(mass.base.size)
+    return mass._replace(base=gain * mass.base * np.exp(-1j * turn))
+
+
 def contact_harmonics(mass: Shaken, x: np.ndarray) -> np.ndarray:
     """Harmonics of q without the offset, for a mass with harmonics x."""
     result = x.copy()
@@ -116,8 +128,9 @@ def load_harmonics(mass: Shaken, f_n: float, zeta: float) -> np.ndarray:
 
 
 def motion(mass: Shaken, values: np.ndarray) -> Motion:
-    """The steady state for f_n > 0, zeta >= 0, x_F >= 0, mu >= 1 (or a compliance >= 0) and offset_x."""
-    f_n, zeta, friction, law, offset = (float(value) for value in values)
+    """The steady state for f_n > 0, zeta >= 0, x_F >= 0, mu >= 1 (or a compliance >= 0), and any others."""
+    f_n, zeta, friction, law, delay, gain, offset = (float(value) for value in values)
+    mass = corrected(mass, delay, gain)
     mu, spring = (1.0, 1.0 / law if law > 0.0 else 0.0) if mass.elastic else (law, 0.0)
     moves = mass.contact == "joined-base-wall"
     q = mass.start[0] - offset - (float(mass.base.sum().real) if moves else 0.0)
@@ -164,7 +177,8 @@ def places_and_slopes(mass: Shaken, fitted: np.ndarray, free: np.ndarray) -> tup
     slopes = np.zeros((places.size, fitted.size))
     slopes[:, OFFSET] = 1.0  # the whole motion is moved
     unit = float(np.abs(mass.base[1:]).max())
-    steps = _STEP * np.array([valid[F_N], 1.0, unit, valid[LAW] if elastic else _STEP, unit])
+    of_law = valid[LAW] if elastic else _STEP
+    steps = _STEP * np.array([valid[F_N], 1.0, unit, of_law, 1.0 / mass.frequency, 1.0, unit])
     for index in np.flatnonzero(free[:OFFSET]):
         step = np.zeros(fitted.size)
         step[index] = steps[index]

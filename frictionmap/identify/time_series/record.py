@@ -10,17 +10,21 @@ from ...datasets.provenance import system_text
 from ...errors import InputError
 from ...model.system import DAMPING_REFERENCES
 from ...units.table import checked_unit, conversion
-from ..parameters import CONTACT_STIFFNESS, checked_free, is_elastic, refuse_mu
-from ..spring import held_compliance, spring_in_newtons, spring_warnings, with_stiffness
+from ..explanations import Outcome
+from ..parameters import ALIKE, CONTACT_STIFFNESS, checked_free, is_elastic, refuse_mu
+from ..spring import held_compliance, spring_in_newtons, spring_warnings
 from ..statistics.cautions import bound_warnings, correlation_warnings, interval_warnings
 from ..statistics.estimates import estimates, number, usable_errors, verdict
 from ..statistics.least_squares import Errors, undetermined
+from ..statistics.levels import MISFIT, MISFIT_SHARE
 from ..statistics.robust import LOSSES
-from .data import fit_clipped, measured_record, whole_record
-from .errors import DERIVED, derived_values, record_errors
+from .alternatives import Task, Tried, explained
+from .data import measured_record
+from .errors import DERIVED
+from .estimates import estimated, tolerances, units, with_others
 from .fit import RecordFit
 from .labels import of_data, of_record, one_mass
-from .motion import CONTACTS, LAW, MU, OFFSET, PARAMETERS, X_F, ZETA, outer
+from .motion import CONTACTS, GAIN, LAW, MU, OFFSET, PARAMETERS, X_F, ZETA, outer
 from .static_friction import IDLE, ONE
 from .verdict import listed, record_verdict
 
@@ -32,11 +36,15 @@ _TRADING = (ZETA, X_F, MU)
 
 _MODEL_ERROR = "residuals at the harmonics of the base, over the noise beside them; 1 if due to chance"
 
+_TOLERANCE = "{} between the channels that moves f_n, zeta or x_F by half its interval"
+
 _MEANINGS = {
     "f_n": "natural frequency without friction and damping",
     "zeta": "viscous damping ratio",
     "x_F": "kinetic friction force over stiffness",
     "mu": "static over kinetic friction force",
+    "delay": "time by which x is behind what the base moves, because the channels differ",
+    "gain": "gain of x over that of the base; lengths are in the units of one or the other",
     "offset_x": "place of the unloaded mass where the base is at its zero, the mean over the record",
     "beta": "friction ratio, x_F over the first harmonic of the base",
     "lag_deg": "lag of the first harmonic of the mass behind that of the base, as measured",
@@ -84,8 +92,9 @@ def record(
         Whether the damper acts on the velocity of the mass, or on that relative to the base.
     known : mapping
         Parameters to be held: f_n [Hz] > 0, zeta >= 0, x_F >= 0, mu >= 1, offset_x, contact_stiffness > 0
-        (kt/k of a spring in the contact).  Others are fitted, but the contact is rigid unless `free` or
-        `known` names contact_stiffness.
+        (kt/k of a spring in the contact), delay [s] of x behind the base and gain > 0 of x over the base, by
+        their channels.  Others are fitted, but the contact is rigid, and the channels agree, unless `free`
+        or `known` names contact_stiffness, delay or gain, or the record cannot be explained without one.
     stiffness : float
         k [N/m] > 0; gives the friction force F = k x_F [N], and the stiffness of a spring in the contact
         [N/m].
@@ -94,23 +103,26 @@ def record(
     loss : "linear" or "soft_l1"
         What residuals cost: their squares, or less beyond the level of the noise, for outliers.
     free : sequence of str
-        Parameters to be fitted, all that are not known; needed only to name contact_stiffness.
+        Parameters to be fitted, all that are not known; needed only to name contact_stiffness, delay or
+        gain, or so that none of them is added.
 
     Returns
     -------
     xarray.Dataset
-        On parameter (f_n, zeta, x_F, mu, offset_x, and what follows: beta = x_F/Y_1, lag_deg and
-        amplitude_ratio of the measured first harmonics, stops_per_cycle of the fit): estimate,
-        standard_error, lower and upper (95 %, one-sided where `at_bound`), `known`, unit; `correlation`; on
-        sample: time, base, data, model, residual; on channel and harmonic: `phasor`, at the middle of the
-        record, and its error; scalars `base_frequency`, `cycles`, `base_distortion`, `drift`, `change`
-        (stationarity), `residual_rms`, `verdict` and others.  Attribute `warnings`.  With a spring in the
-        contact contact_stiffness takes the place of mu, and slips_per_cycle that of stops_per_cycle.
+        On parameter (f_n, zeta, x_F, mu, delay and gain if they were named or added, offset_x, and what
+        follows: beta = x_F/Y_1, lag_deg and amplitude_ratio of the measured first harmonics, stops_per_cycle
+        of the fit): estimate, standard_error, lower and upper (95 %, one-sided where `at_bound`), `known`,
+        unit; `correlation`; on sample: time, base, data, model, residual; on channel and harmonic: `phasor`,
+        at the middle of the record, and its error; scalars `base_frequency`, `cycles`, `base_distortion`,
+        `drift`, `change` (stationarity), `residual_rms`, `verdict`, `delay_tolerance`, `gain_tolerance` and
+        others.  Attribute `warnings`.  With a spring in the contact contact_stiffness takes the place of mu,
+        and slips_per_cycle that of stops_per_cycle.
 
     Raises
     ------
     InputError
-        An argument is invalid; base or mass do not move; fewer than 2 cycles or 8 samples per cycle.
+        An argument is invalid; base or mass do not move; fewer than 2 cycles or 8 samples per cycle; nothing
+        is known, and no model comes near to the record.
 
     Notes
     -----
@@ -125,6 +137,11 @@ def record(
     determine them: by correlations beyond 0.95 if friction is not known to 10 %, and beyond 0.5 if the model
     leaves more than noise at the harmonics of the base (`model_error` > 1).  `joint` fits several records.
 
+    Where the model leaves more than noise, it is fitted again with a spring in the contact, a delay or a gain
+    between the channels, and without each known value.  If one of the first three alone explains the record
+    it is added, and the verdict names it.  Otherwise the verdict is `explained_otherwise` or `not_explained`,
+    and the estimates must not be used.
+
     Of a contact with a spring mu is 1.  Where the record excludes small stiffnesses only, `upper` is
     infinite, the standard error NaN, and a warning says so.  An estimate on its bound is a rigid contact.
     """
@@ -133,27 +150,54 @@ def record(
     checks.choice(damping_reference, "damping_reference", DAMPING_REFERENCES)
     checks.choice(loss, "loss", LOSSES)
     elastic = is_elastic(checked_free(free, known or {}, FITTABLE), known or {})
-    held = checked_known(known or {}, free if elastic else None)
-    robust = loss == "soft_l1"
-    given = measured_record(time, base, x, window, robust, elastic)
-    given, fit = fit_clipped(contact, damping_reference, given, held, robust, elastic)
-    given = whole_record(given, fit, robust)
-    phasors = given.phasors
+    held = checked_known(known or {}, free)
+    task = Task(contact, damping_reference, held, elastic, loss == "soft_l1")
+    given = measured_record(time, base, x, window, task.robust, elastic or "delay" not in held)
+    calibrated = [name for name in ALIKE if name in (known or {})]
+    outcome = explained(task, given, calibrated, free is None)
+    fit = outcome.chosen.fit
     if elastic:
         _check_identifiable(fit)
-    found = record_errors(fit, phasors, given.time, given.good)
-    values = np.concatenate((fit.values, derived_values(fit, phasors)))
-    if elastic:
-        values, found = with_stiffness(values, found, LAW, bool(fit.free[LAW]))
-    ds = _dataset(fit, values, found, unit)
+    if not known:  # a value that is held may be wrong on purpose
+        _check_misfit(outcome)
+    own = estimated(outcome.chosen, task.robust)
+    given, values, found = own
+    covering, causes = with_others(outcome, own, unit, task.robust)
+    shown = _usable(fit, covering)
+    hidden = [name for name in ALIKE if name not in (*(known or {}), *(free or ()), outcome.chosen.name)]
+    ds = _dataset(fit, values, shown, unit, hidden)
+    within = tolerances(outcome.chosen, found)
+    for name, (most, _) in within.items():
+        ds[f"{name}_tolerance"] = number(most, _TOLERANCE.format(name), "s" if name == "delay" else "1")
+    ds["verdict"] = verdict(*record_verdict(outcome, found, causes, within))
     base_used = given.channels[given.good, 0]
     ds["time"] = xr.Variable("sample", given.samples.time, {"long_name": "time", "units": "s"})
     ds["base"] = xr.Variable("sample", base_used, {"long_name": "base, measured", "units": unit})
-    ds = ds.assign(of_record(given, unit)).assign(_of_motion(fit, values, found, unit, stiffness))
+    ds = ds.assign(of_record(given, unit)).assign(_of_motion(fit, values, shown, unit, stiffness))
     ds.attrs["title"] = "Record of steady motion"
     ds.attrs["config"] = system_text(one_mass(contact, damping_reference))
     ds.attrs["warnings"] = "; ".join(of_data(given, ds) + _of_fit(fit, found))
     return ds
+
+
+def _check_misfit(outcome: Outcome[Tried]) -> None:
+    """Refuse a record that no model comes near to, as `free_decay` does.
+
+    Raises
+    ------
+    InputError
+        Residuals are far above the noise, and a large part of the motion.
+    """
+    fit = outcome.chosen.fit
+    rms, noise = float(np.sqrt(np.mean(fit.residual**2))), outcome.chosen.noise
+    motion = float(np.std(fit.samples.x))
+    if outcome.chosen.explains or outcome.alike or rms <= max(MISFIT * noise, MISFIT_SHARE * motion):
+        return
+    raise InputError(
+        f"cannot fit x as a steady motion of one mass with friction: the residuals ({rms:.4g} rms) are far "
+        f"above the noise beside the harmonics ({noise:.4g}), also with a spring in the contact or with "
+        "channels that differ; check contact, damping_reference and the columns"
+    )
 
 
 def _check_identifiable(fit: RecordFit) -> None:
@@ -181,7 +225,7 @@ def checked_known(known: Mapping[str, float], free: Sequence[str] | None) -> dic
         "x_F": {"least": 0.0},
         "mu": {"least": 1.0},
     }
-    result = {}
+    result = {name: value for name, value in ALIKE.items() if name not in (free or ())}
     for name, value in known.items():
         checks.choice(name, "known", FITTABLE)
         if name == CONTACT_STIFFNESS:
@@ -192,34 +236,42 @@ def checked_known(known: Mapping[str, float], free: Sequence[str] | None) -> dic
         refuse_mu(free, result)
         result.pop("mu", None)
     if len(result) == len(PARAMETERS):
-        raise InputError(f"known must leave at least one parameter free; got all of {', '.join(PARAMETERS)}")
+        raise InputError(f"known must leave at least one parameter free; got all of {', '.join(known)}")
     return result
 
 
-def _dataset(fit: RecordFit, values: np.ndarray, found: Errors, unit: str) -> xr.Dataset:
-    """The estimates, residuals as they are measured."""
-    size, elastic = len(PARAMETERS), fit.mass.elastic
-    at_bound = fit.solution.at_bound[:size]
-    further = np.array([at_bound[X_F], False, False, False])
-    solution = fit.solution._replace(
-        values=values,
-        residual=fit.residual,
-        at_bound=np.concatenate((at_bound, further)),
-    )
-    units = ("Hz", "1", unit, "1", unit, "1", "deg", "1", "1")
-    every = np.concatenate((fit.free, np.ones(len(DERIVED), dtype=bool)))
-    if not elastic:
-        found = found._replace(standard_error=usable_errors(found, MU, 1.0, bool(every[MU])))
+def _dataset(fit: RecordFit, values: np.ndarray, found: Errors, unit: str, hidden: list[str]) -> xr.Dataset:
+    """The estimates, residuals as they are measured.
+
+    hidden : parameters that are not shown
+    """
+    elastic, bound = fit.mass.elastic, fit.solution.at_bound[: len(PARAMETERS)]
     meanings = dict(
         _OF_SPRING.get(name, (name, words)) if elastic else (name, words) for name, words in _MEANINGS.items()
     )
-    ds = estimates(meanings, units, solution, found, every, fit.samples.x, unit)
-    for name, one_unit in list(zip(meanings, units, strict=True))[size:]:
-        ds[name] = number(float(ds["estimate"].sel(parameter=name)), meanings[name], one_unit)
+    solution = fit.solution._replace(
+        values=values, residual=fit.residual, at_bound=np.append(bound, [bound[X_F], False, False, False])
+    )
+    every = np.append(fit.free, np.ones(len(DERIVED), dtype=bool))
+    ds = estimates(meanings, units(unit), solution, found, every, fit.samples.x, unit)
+    for name in list(meanings)[len(PARAMETERS) :]:
+        own = ds.sel(parameter=name)
+        ds[name] = number(float(own["estimate"]), meanings[name], str(own["unit"].values))
     ds["model_error"] = number(fit.model_error, _MODEL_ERROR)
-    code, meanings = record_verdict(fit, found)
-    ds["verdict"] = verdict(code, meanings)
-    return ds
+    return ds.drop_sel(parameter=hidden, parameter2=hidden)
+
+
+def _usable(fit: RecordFit, found: Errors) -> Errors:
+    """Errors as they are reported: no standard errors where only the interval can be used.
+
+    Of lengths there are two values where the gains of the channels differ.
+    """
+    errors = found.standard_error
+    if not fit.mass.elastic:
+        errors = usable_errors(found, MU, 1.0, bool(fit.free[MU]))
+    if fit.free[GAIN]:
+        errors = np.where(np.isin(np.arange(errors.size), (X_F, OFFSET)), np.nan, errors)
+    return found._replace(standard_error=errors)
 
 
 def _of_motion(

@@ -13,9 +13,9 @@ from itertools import product
 
 import numpy as np
 
-from ..parameters import CONTACT_STIFFNESS
+from ..parameters import ALIKE, CONTACT_STIFFNESS
 from ..signals.phasors import Phasors, harmonics_at
-from .motion import Shaken, contact_harmonics, load_harmonics, motion, shaken
+from .motion import LAW, OFFSET, Shaken, contact_harmonics, corrected, load_harmonics, motion, shaken
 
 #: Frequency ratios, damping ratios and mu that are tried.
 _RATIOS = np.geomspace(0.1, 4.0, 37)
@@ -24,6 +24,10 @@ _STATIC = (1.0, 1.1, 1.3, 1.7)
 
 #: Compliances of springs that are tried.
 _COMPLIANCES = (2.0, 1.0, 0.5, 0.25, 0.12, 0.06, 0.03, 0.01)
+
+#: Compliances beside a solution: with stiff springs the sum has many least values, as near to each other as
+#: this factor.
+_BESIDE = np.geomspace(0.003, 1.0, 40)
 
 #: Places in a cycle at which motions are compared.
 _PLACES = 128
@@ -35,7 +39,8 @@ def starts(
     """Parameters near the record, the best first, each with another natural frequency or another spring."""
     angle = 2.0 * np.pi * np.arange(_PLACES) / _PLACES
     time = phasors.middle + angle / (2.0 * np.pi * phasors.frequency)
-    mass = shaken(contact, damping_reference, phasors, time, elastic)
+    delay, gain = (known.get(name, alike) for name, alike in ALIKE.items())
+    mass = corrected(shaken(contact, damping_reference, phasors, time, elastic), delay, gain)
     measured = harmonics_at(phasors.values[1], angle)
     best: dict[tuple[float, float], tuple[float, np.ndarray]] = {}
     frequencies = [known["f_n"]] if "f_n" in known else list(phasors.frequency / _RATIOS)
@@ -44,13 +49,28 @@ def starts(
     laws = [known[name]] if name in known else tried
     for f_n, zeta, law in product(frequencies, dampings, laws):
         for friction in _frictions(mass, phasors.values[1], known, (f_n, zeta, law)):
-            places = motion(mass, np.array([f_n, zeta, friction, law, 0.0])).places
+            places = motion(mass, np.array([f_n, zeta, friction, law, *ALIKE.values(), 0.0])).places
             offset = known.get("offset_x", float(np.mean(measured - places)))
             square = float(np.sum((measured - places - offset) ** 2))
             key = f_n, law if elastic else 0.0
             if key not in best or square < best[key][0]:
-                best[key] = square, np.array([f_n, zeta, friction, law, offset])
+                best[key] = square, np.array([f_n, zeta, friction, law, delay, gain, offset])
     return [values for _, values in sorted(best.values(), key=lambda found: found[0])]
+
+
+def other_springs(mass: Shaken, x: np.ndarray, values: np.ndarray) -> list[np.ndarray]:
+    """Parameters with other compliances, the best first.
+
+    x : shape (samples,), the mass as it was measured
+    """
+    found = []
+    for compliance in _BESIDE:
+        one = values.copy()
+        one[LAW] = compliance
+        off = x - motion(mass, one).places
+        one[OFFSET] += float(np.mean(off))
+        found.append((float(np.var(off)), one))
+    return [one for _, one in sorted(found, key=lambda pair: pair[0])]
 
 
 def _frictions(

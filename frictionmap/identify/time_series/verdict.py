@@ -1,13 +1,15 @@
-"""Verdict on a record: friction, and whether its estimates are identifiable."""
+"""Verdict on a record: friction, whether the model explains it, and whether estimates are identifiable."""
 
 from itertools import combinations
 
 import numpy as np
 
+from ..explanations import Cause, Outcome, added, doubts
 from ..statistics.least_squares import Errors
 from ..statistics.levels import CORRELATED, FOUND
+from .alternatives import Tried
 from .fit import RecordFit
-from .motion import F_N, LAW, X_F, ZETA
+from .motion import DELAY, F_N, GAIN, LAW, X_F, ZETA
 
 #: Estimates that correlate by more than `CORRELATED` are not identifiable separately if the interval of the
 #: friction is wider than this share of it, to either side.
@@ -18,7 +20,7 @@ _VAGUE = 0.1
 _CORRELATED_BY_MODEL = 0.5
 
 #: What a motion depends on in a way of its own; the offset only moves it.
-_SHAPING = (F_N, ZETA, X_F, LAW)
+_SHAPING = (F_N, ZETA, X_F, LAW, DELAY, GAIN)
 
 _VERDICTS = {
     "no_friction_found": "no friction found",
@@ -40,12 +42,19 @@ REMEDY = (
 _REMEDY_WITH_SPRING = "hold f_n and zeta from a free decay, or hold contact_stiffness"
 
 
-def record_verdict(fit: RecordFit, found: Errors) -> tuple[int, dict[str, str]]:
+def record_verdict(
+    outcome: Outcome[Tried], found: Errors, causes: list[Cause], within: dict[str, tuple[float, bool]]
+) -> tuple[int, dict[str, str]]:
     """A code and the meanings of all codes.
 
     found : with the stiffness of a spring in the place of its compliance
+    causes : with which the model explains the record: what was added to it, or what could be
+    within : see `tolerances`
     """
-    meanings = dict(_VERDICTS_WITH_SPRING if fit.mass.elastic else _VERDICTS)
+    chosen, fit = outcome.chosen, outcome.chosen.fit
+    plain = _VERDICTS_WITH_SPRING if fit.mass.elastic else _VERDICTS
+    more = _if_alike(within) + added(outcome, causes)
+    meanings = {name: words + more for name, words in plain.items()}
     sticks = bool(np.isfinite(found.upper[LAW])) if fit.mass.elastic else fit.motion.stops > 0
     friction = friction_found(float(fit.values[X_F]), float(found.standard_error[X_F]))
     together = inseparable(fit, found)
@@ -53,9 +62,24 @@ def record_verdict(fit: RecordFit, found: Errors) -> tuple[int, dict[str, str]]:
         f"not identifiable: {listed(together)} cannot be determined together from this record, "
         f"and their estimates must not be used: {_REMEDY_WITH_SPRING if fit.mass.elastic else REMEDY}"
     )
+    meanings |= doubts(outcome, causes)
+    codes = list(meanings)
+    if outcome.alike:
+        return codes.index("explained_otherwise"), meanings
     if together and (friction or sticks):
-        return list(meanings).index("not_identified"), meanings
+        return codes.index("not_identified"), meanings
+    if not chosen.explains:
+        return codes.index("not_explained"), meanings
     return int(friction) * (1 + int(sticks)), meanings
+
+
+def _if_alike(within: dict[str, tuple[float, bool]]) -> str:
+    """How well the channels must agree, where the record would not show that they do not."""
+    words = {"delay": ("in time to {:.2g} ms", 1e3), "gain": ("equal in gain to {:.2g} %", 1e2)}
+    needed = [
+        words[name][0].format(words[name][1] * most) for name, (most, shown) in within.items() if not shown
+    ]
+    return f" (if the channels are {' and '.join(needed)})" if needed else ""
 
 
 def friction_found(friction: float, error: float) -> bool:

@@ -11,8 +11,9 @@ fit              the steady states nearest to the data
 extremes         extremes of sampled functions between their samples
 phase_inversion  `friction_ratio`: friction ratios from single lags
 lags             friction ratios from the single lags of a table
-cautions         warnings about the fit
 labels           the dataset of the fit
+alternatives     whether the model explains a table, and what else does
+cautions         warnings about the fit
 forced           `forced`: from amplitudes and lags to estimates
 ===============  =====================================================================
 """

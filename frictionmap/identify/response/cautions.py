@@ -1,7 +1,6 @@
 """Warnings about a fit of forced responses."""
 
 import numpy as np
-from scipy.special import gammaincc
 
 from ... import regimes
 from ..spring import spring_warnings
@@ -11,7 +10,7 @@ from ..statistics.cautions import (
     correlation_warnings,
     interval_warnings,
 )
-from ..statistics.levels import CHANCE
+from .alternatives import is_beyond_chance
 from .data import ForcedTable
 from .fit import TableFit, parameter_names, shown_estimates
 from .model import LAW, ZETA, points_of
@@ -50,7 +49,7 @@ def _of_contact(fit: TableFit) -> list[str]:
 
 def _scatter(table: ForcedTable, fit: TableFit) -> list[str]:
     freedom = fit.solution.residual.size - int(fit.problem.free.sum())
-    if not all(table.given) or gammaincc(0.5 * freedom, 0.5 * fit.solution.sum) >= CHANCE:
+    if not is_beyond_chance(table, fit.solution.sum, freedom):
         return []
     return [f"residuals are larger than the errors given: reduced chi square {fit.errors.variance:.3g}"]
 

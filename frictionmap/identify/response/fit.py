@@ -8,7 +8,7 @@ from scipy.special import gammainccinv
 from ... import checks, regimes
 from ...errors import InputError
 from ...model.system import System
-from ..parameters import CONTACT_STIFFNESS
+from ..parameters import CHANNELS, CONTACT_STIFFNESS
 from ..spring import SOFTEST, with_stiffness
 from ..statistics.least_squares import (
     Allowance,
@@ -26,20 +26,27 @@ from ..statistics.levels import ROUNDS, SETTLED
 from ..statistics.robust import effective_variance, jackknife_growth, root_mean_square, softened, usual_size
 from ..statistics.weights import estimated_weights, freedom_by_kind
 from .data import ForcedTable
-from .model import F_N, LAW, ZETA, Fitted, ForcedModel, Samples, evaluate
+from .model import DELAY, F_N, GAIN, LAW, ZETA, Fitted, ForcedModel, Samples, evaluate
 from .start import closer, starts
 
 #: The natural frequency is within this share of where the fit begins.
 _FREQUENCY_RANGE = 0.2
 
+#: A delay is looked for up to this share of the shortest cycle, and a gain up to this factor.
+_DELAY, _GAIN = 0.25, 2.0
+
 #: Sums that chance makes larger this rarely end the search for a better one.
 _CHANCE = 1e-2
+
+#: Starts, and evaluations from each, of a search that is not thorough: fits that end near the data take up to
+#: 30.
+_FEW_STARTS, _FEW_EVALUATIONS = 2, 40
 
 #: Looks around the least sum, where chance does not explain it and motions come and go with friction.
 _CLOSER_LOOKS = 2
 
 #: Residuals beyond this many of their errors have little weight in a robust fit.
-_OUTLIER = 1.0
+OUTLIER = 1.0
 
 #: Singular values of slopes below this share of the largest are zero, as are changes of lags [rad] and of
 #: logarithms of amplitudes, per unit of a parameter: differences have some such errors.
@@ -62,36 +69,60 @@ class TableFit(NamedTuple):
     mu_idle: bool  # mu was to be fitted, but no motion that was found stops
 
 
-def fit_forced(
-    table: ForcedTable, system: System, known: np.ndarray, elastic: bool = False, robust: bool = False
-) -> TableFit:
+class Nearest(NamedTuple):
+    """The steady states nearest to a table, without errors."""
+
+    model: ForcedModel  # its samples have the errors that were taken
+    problem: Problem
+    solution: Solution
+    here: Fitted
+    mu_idle: bool
+    rigid: bool  # a spring was to be fitted, but none is better
+
+
+def nearest_states(
+    table: ForcedTable, system: System, known: np.ndarray, elastic: bool, robust: bool, thorough: bool = True
+) -> Nearest:
     """The steady states nearest to a table.
 
     known : (parameters,) values that are held; NaN of the others
     elastic : whether the contact has a spring: its compliance takes the place of mu among the parameters
     robust : whether residuals far beyond their errors have little weight
+    thorough : whether the search goes on where chance does not explain the residuals
     """
     model = ForcedModel(system, bool(system.modes.zeta.any()), table.rows, table.samples, elastic)
-    model, solution, task = _with_errors(model, known, table.given, robust)
+    model, solution, task = _weighted(model, known, table.given, robust, thorough)
     here = evaluate(model, solution.values, task.free)
     idle = not elastic and bool(task.free[LAW]) and not (here.regime == regimes.STICK_SLIP).any()
     rigid = elastic and bool(task.free[LAW] and solution.at_bound[LAW])
     if idle or rigid:
         free = task.free
         held = _with_law(known, 0.0 if rigid else 1.0)
-        model, solution, task = _with_errors(model, held, table.given, robust)
+        model, solution, task = _weighted(model, held, table.given, robust, thorough)
         here = evaluate(model, solution.values, task.free)
         if rigid:  # whatever is left of the spring is within the interval
             task = problem(model, free, float(solution.values[F_N]), robust)
-    flat = rigid or _is_flat(model, solution, task)
+    return Nearest(model, task, solution, here, idle, rigid)
+
+
+def with_errors(table: ForcedTable, near: Nearest, robust: bool) -> TableFit:
+    """The standard errors and intervals of a solution.
+
+    Raises
+    ------
+    InputError
+        The table does not determine a parameter.
+    """
+    model, task, solution = near.model, near.problem, near.solution
+    flat = near.rigid or _is_flat(model, solution, task)
     determined = _without_law(task) if flat else task
     _check_identifiable(table, model, solution, determined)
-    plain = problem(model, determined.free if rigid else task.free, float(solution.values[F_N]))
+    plain = problem(model, determined.free if near.rigid else task.free, float(solution.values[F_N]))
     now = solution._replace(at_bound=solution.at_bound & determined.free)
     variance = 1.0 if any(table.given) else None
     if robust:
-        variance = effective_variance(plain, solution, _OUTLIER)
-        allowance = Allowance(jackknife_growth(plain._replace(free=determined.free), solution, _OUTLIER))
+        variance = effective_variance(plain, solution, OUTLIER)
+        allowance = Allowance(jackknife_growth(plain._replace(free=determined.free), solution, OUTLIER))
     else:
         allowance = estimated_weights(determined, now, _kind(model.samples), ~np.array(table.given))
     found = errors(determined, now, variance, allowance=allowance)
@@ -104,7 +135,7 @@ def fit_forced(
     if robust:
         solution = solution._replace(residual=plain.residuals(solution.values)[0])
         found = found._replace(variance=solution.sum / _freedom(solution, task))
-    return TableFit(model, task, solution, found, here, idle)
+    return TableFit(model, task, solution, found, near.here, near.mu_idle)
 
 
 def _is_flat(model: ForcedModel, solution: Solution, task: Problem) -> bool:
@@ -187,19 +218,21 @@ def problem(model: ForcedModel, free: np.ndarray, f_n: float, robust: bool = Fal
 
     lowest, highest = np.full(free.size, -np.inf), np.full(free.size, np.inf)
     lowest[F_N], highest[F_N] = f_n * (1.0 - _FREQUENCY_RANGE), f_n * (1.0 + _FREQUENCY_RANGE)
+    highest[DELAY] = _DELAY / float(model.rows.frequency.max())
+    lowest[DELAY], lowest[GAIN], highest[GAIN] = -highest[DELAY], 1.0 / _GAIN, _GAIN
     highest[ZETA] = checks.LARGEST_DAMPING
     if model.elastic:
         highest[LAW] = SOFTEST
     plain = Problem(residuals, free, floor, lowest, highest)
-    return softened(plain, _OUTLIER) if robust else plain
+    return softened(plain, OUTLIER) if robust else plain
 
 
-def _with_errors(
-    model: ForcedModel, known: np.ndarray, given: tuple[bool, bool], robust: bool
+def _weighted(
+    model: ForcedModel, known: np.ndarray, given: tuple[bool, bool], robust: bool, thorough: bool
 ) -> tuple[ForcedModel, Solution, Problem]:
     """Minimise with given errors, or with errors of lags and amplitudes from their own residuals."""
     free = np.isnan(known)
-    solution, task = _best(model, known, all(given), robust)
+    solution, task = _best(model, known, all(given), robust, thorough)
     for _ in range(0 if all(given) else ROUNDS):
         samples = _with_scatter(model, solution, free, given, robust)
         change = samples.sigma / model.samples.sigma
@@ -232,18 +265,20 @@ def _kind(samples: Samples) -> np.ndarray:
     return (~samples.is_phase).astype(int)
 
 
-def _best(model: ForcedModel, known: np.ndarray, sure: bool, robust: bool) -> tuple[Solution, Problem]:
+def _best(
+    model: ForcedModel, known: np.ndarray, sure: bool, robust: bool, thorough: bool
+) -> tuple[Solution, Problem]:
     """The least sum over all starts, or the first that chance explains if the errors are sure."""
     free = np.isnan(known)
     freedom = model.samples.row.size - int(free.sum())
     enough = 2.0 * float(gammainccinv(0.5 * freedom, _CHANCE)) if sure else 0.0
-    begun = starts(model, known)
-    looks = _CLOSER_LOOKS if np.isnan(known[LAW]) and not model.elastic else 0
+    begun = starts(model, known)[: None if thorough else _FEW_STARTS]
+    looks = _CLOSER_LOOKS if thorough and np.isnan(known[LAW]) and not model.elastic else 0
     best: tuple[Solution, Problem] | None = None
     while begun and (best is None or best[0].sum > enough):
         start = begun.pop(0)
         task = problem(model, free, float(start[F_N]), robust)
-        found = minimise(task, start)
+        found = minimise(task, start, None if thorough else _FEW_EVALUATIONS)
         if best is None or found.sum < best[0].sum:
             best = found, task
             if looks and found.sum > enough:
@@ -281,6 +316,6 @@ def shown_estimates(fit: TableFit) -> tuple[np.ndarray, Errors]:
 
 
 def parameter_names(table: ForcedTable, elastic: bool) -> tuple[str, ...]:
-    """beta, or one of every set; f_n, zeta, and mu or the stiffness of a spring."""
+    """beta, or one of every set; f_n, zeta, mu or the stiffness of a spring, and how the channels differ."""
     betas = [f"beta_{label}" for label in table.labels] if len(table.labels) > 1 else ["beta"]
-    return (*betas, "f_n", "zeta", CONTACT_STIFFNESS if elastic else "mu")
+    return (*betas, "f_n", "zeta", CONTACT_STIFFNESS if elastic else "mu", *CHANNELS)

@@ -11,20 +11,21 @@ from ...datasets.provenance import system_text
 from ...errors import InputError
 from ...model.general import refuse_general
 from ...model.system import System
-from ..parameters import CONTACT_STIFFNESS, checked_free, is_elastic, refuse_mu
+from ..explanations import Cause, Outcome, added, doubts
+from ..parameters import ALIKE, CHANNELS, CONTACT_STIFFNESS, checked_free, is_elastic, refuse_mu
 from ..spring import held_compliance
 from ..statistics.estimates import verdict
 from ..statistics.levels import FOUND
 from ..statistics.robust import LOSSES
+from .alternatives import Task, Tried, explained, with_others
 from .cautions import fit_warnings
 from .data import ForcedTable, Values, checked_table
-from .fit import TableFit, fit_forced
 from .labels import friction_forces, labelled, spring_stiffness
 from .lags import friction_ratios, impossible, refuse_impossible, without
-from .model import F_N, LAW, ZETA
+from .model import DELAY, F_N, GAIN, LAW, ZETA
 
 #: What can be fitted or held; beta is that of every set.
-PARAMETERS = ("beta", "f_n", "zeta", "mu", CONTACT_STIFFNESS)
+PARAMETERS = ("beta", "f_n", "zeta", "mu", CONTACT_STIFFNESS, *CHANNELS)
 
 #: An error of all rows, or one of each.
 Error = float | Sequence[float] | np.ndarray | None
@@ -78,8 +79,10 @@ def forced(
         Labels of tests; those of one label have one friction force.
     known : mapping
         Parameters to be held: beta (of all sets), f_n [Hz] > 0, zeta >= 0, mu >= 1, contact_stiffness > 0
-        (kt/k1 of a spring in the contact, as of `System`).  Others are fitted, but the contact is rigid
-        unless `free` or `known` names contact_stiffness.
+        (kt/k1 of a spring in the contact, as of `System`), delay [s] and gain > 0 of the masses behind and
+        over the load, by their channels.  Others are fitted, but the contact is rigid, and the channels
+        agree, unless `free` or `known` names contact_stiffness, delay or gain, or the data cannot be
+        explained without one.
     sigma_phase, sigma_amplitude : float or array, shape (rows,)
         Errors of the lags [deg], and relative ones of the amplitudes; by default from the residuals.
     unreachable : "refuse" or "drop"
@@ -91,12 +94,14 @@ def forced(
     loss : "linear" or "soft_l1"
         What residuals cost: their squares, or less beyond their errors, for outliers.
     free : sequence of str
-        Parameters to be fitted, all that are not known; needed only to name contact_stiffness.
+        Parameters to be fitted, all that are not known; needed only to name contact_stiffness, delay or
+        gain, or so that none of them is added.
 
     Returns
     -------
     xarray.Dataset
-        On parameter (beta, or beta_<label> of every set; f_n, zeta, mu or contact_stiffness) and on sample
+        On parameter (beta, or beta_<label> of every set; f_n, zeta, mu or contact_stiffness, and delay and
+        gain if they were named or added) and on sample
         as `free_decay`, see `quantity`: data and model are lags [deg] and amplitude ratios, residuals
         degrees and logarithms of ratios.  beta is the friction force over the mean load of its set.  Also on
         sample: frequency, mass, set, sigma, frequency_ratio, friction_ratio, `regime`, and `reached`, the
@@ -119,6 +124,11 @@ def forced(
     the cycle.  Far from there, or where it is large, the data exclude small values only: `upper` is then
     infinite, the standard error NaN, and a warning says so.  An estimate on its bound is a rigid contact.
     Single lags give no friction ratio then.
+
+    Where residuals are larger than errors that are given, or one parameter more explains much of them, the
+    model is fitted again with a spring, a delay or a gain, and without each known value.  If one of the first
+    three alone explains the data it is added, and the verdict names it.  Otherwise the verdict is
+    `explained_otherwise` or `not_explained`, and the estimates must not be used.
     """
     system = _default_system() if system is None else checks.instance(system, "system", System)
     system, given = _without_spring(system, known or {})
@@ -130,7 +140,7 @@ def forced(
     table = checked_table(
         system, frequency, (phase_lag, amplitude_ratio), (sigma_phase, sigma_amplitude), load, sets, elastic
     )
-    held = _checked_known(given, system, len(table.labels), elastic)
+    held = _checked_known(given, system, len(table.labels), elastic, free or ())
     warnings = []
     if not (~table.samples.is_phase).any() and np.isnan(held[F_N]):
         held[F_N] = _passing(table)
@@ -139,21 +149,22 @@ def forced(
         )
     robust = checks.choice(loss, "loss", LOSSES) == "soft_l1"
     drop = checks.choice(unreachable, "unreachable", ("refuse", "drop")) == "drop"
-    if not elastic:
-        table = _reachable(table, system, held[F_N], drop, warnings)
-    _check_count(table, held)
-    fit = fit_forced(table, system, held, elastic, robust)
-    if not elastic:
-        possible = _reachable(table, system, float(fit.solution.values[F_N]), drop, warnings)
-        if possible is not table:
-            table, fit = possible, fit_forced(possible, system, held, robust=robust)
-    ds = labelled(table, fit, unit if load is not None else None)
-    ds = ds.assign({} if elastic else friction_ratios(fit))
+    task = Task(table, system, held, elastic, robust)
+    if _rubs_rigidly(elastic, held):
+        task = task._replace(table=_reachable(table, system, held[F_N], drop, warnings))
+    said = (*given, *(free or ()))
+    doubtful = [name for name in (*CHANNELS, *given) if (name in CHANNELS) != (name in said)]
+    task, outcome = _explained(task, doubtful, free is None, drop, warnings)
+    table, fit = task.table, outcome.chosen.fit
+    found, causes = with_others(outcome, table)
+    hidden = [name for name in CHANNELS if name not in (*said, outcome.chosen.name)]
+    ds = labelled(table, fit, found, unit if load is not None else None, hidden)
+    ds = ds.assign({} if fit.model.elastic else friction_ratios(fit))
     if stiffness is not None:
         newtons = checks.number(stiffness, "stiffness", above=0.0)
-        ds = ds.assign(friction_forces(table, fit, unit, newtons) if load is not None else {})
-        ds = ds.assign(spring_stiffness(fit, newtons))
-    ds["verdict"] = verdict(_verdict(fit), _VERDICTS)
+        ds = ds.assign(friction_forces(table, fit, found, unit, newtons) if load is not None else {})
+        ds = ds.assign(spring_stiffness(fit, found, newtons))
+    ds["verdict"] = verdict(*_verdict(outcome, causes))
     ds.attrs["title"] = "Forced responses"
     ds.attrs["system"] = fit.model.system_at(fit.solution.values).describe()
     ds.attrs["config"] = system_text(system)
@@ -185,9 +196,12 @@ def _without_spring(system: System, known: Mapping[str, float]) -> tuple[System,
     return rigid, given | {CONTACT_STIFFNESS: spring}
 
 
-def _checked_known(known: Mapping[str, float], system: System, sets: int, elastic: bool) -> np.ndarray:
+def _checked_known(
+    known: Mapping[str, float], system: System, sets: int, elastic: bool, free: Sequence[str]
+) -> np.ndarray:
     """Parameters that are held, NaN of the others."""
-    held = np.full(sets + 3, np.nan)
+    held = np.full(sets + 5, np.nan)
+    held[DELAY:] = [np.nan if name in free else alike for name, alike in ALIKE.items()]
     for name, value in known.items():
         if name == "beta":
             held[:F_N] = checks.number(value, "known.beta", least=0.0)
@@ -197,6 +211,10 @@ def _checked_known(known: Mapping[str, float], system: System, sets: int, elasti
             held[ZETA] = checks.number(value, "known.zeta", least=0.0, most=checks.LARGEST_DAMPING)
         elif name == CONTACT_STIFFNESS:
             held[LAW] = held_compliance(value)
+        elif name == "delay":
+            held[DELAY] = checks.number(value, "known.delay")
+        elif name == "gain":
+            held[GAIN] = checks.number(value, "known.gain", above=0.0)
         else:
             checks.choice(name, "known", PARAMETERS)
             mu = checks.number(value, "known.mu", least=1.0)
@@ -223,6 +241,27 @@ def _reachable(
         refuse_impossible(table, system, f_n, int(wrong[0]))
     warnings.append(f"{wrong.size} lags that no friction ratio gives were ignored")
     return without(table, wrong)
+
+
+def _rubs_rigidly(elastic: bool, values: np.ndarray) -> bool:
+    """Whether lags have the range that friction gives: no spring in the contact, and channels in time."""
+    return not elastic and bool(values[DELAY] == ALIKE["delay"])
+
+
+def _explained(
+    task: Task, doubtful: list[str], may_add: bool, drop: bool, warnings: list[str]
+) -> tuple[Task, Outcome[Tried]]:
+    """The model that is reported, and the table without lags that no friction gives."""
+    _check_count(task.table, task.known)
+    outcome = explained(task, doubtful, may_add)
+    fit = outcome.chosen.fit
+    if not _rubs_rigidly(fit.model.elastic, fit.solution.values):
+        return task, outcome
+    possible = _reachable(task.table, task.system, float(fit.solution.values[F_N]), drop, warnings)
+    if possible is task.table:
+        return task, outcome
+    task = task._replace(table=possible)
+    return task, explained(task, doubtful, may_add)
 
 
 def _check_count(table: ForcedTable, held: np.ndarray) -> None:
@@ -252,10 +291,14 @@ def _passing(table: ForcedTable) -> float:
     return float(np.median(found))
 
 
-def _verdict(fit: TableFit) -> int:
-    values, error = fit.solution.values, fit.errors.standard_error
-    found = values > FOUND * error
+def _verdict(outcome: Outcome[Tried], causes: list[Cause]) -> tuple[int, dict[str, str]]:
+    """A code and the meanings of all codes."""
+    fit, more = outcome.chosen.fit, added(outcome, causes)
+    meanings = {name: words + more for name, words in _VERDICTS.items()} | doubts(outcome, causes)
+    if not outcome.chosen.explains:
+        return list(meanings).index("explained_otherwise" if outcome.alike else "not_explained"), meanings
+    found = fit.solution.values > FOUND * fit.errors.standard_error
     friction = bool(found[:F_N].all())
     if not fit.problem.free[ZETA]:
-        return 4 + int(friction)
-    return int(friction) + 2 * int(found[ZETA])
+        return 4 + int(friction), meanings
+    return int(friction) + 2 * int(found[ZETA]), meanings

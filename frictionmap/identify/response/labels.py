@@ -8,9 +8,10 @@ from ...units.table import checked_unit, conversion
 from ..parameters import CONTACT_STIFFNESS
 from ..spring import spring_in_newtons
 from ..statistics.estimates import QUANTITIES, estimates, number, usable_errors
+from ..statistics.least_squares import Errors
 from .data import ForcedTable
 from .fit import TableFit, parameter_names, shown_estimates
-from .model import F_N, LAW, points_of
+from .model import F_N, GAIN, LAW, points_of
 
 #: From where the motion is reached: both starts, or one.
 _REACHED = ("from_anywhere", "from_rest_only", "moving_only")
@@ -18,23 +19,35 @@ _REACHED = ("from_anywhere", "from_rest_only", "moving_only")
 #: Two motions whose first harmonics differ by less of their size are one.
 _SAME = 1e-9
 
+#: Units of parameters that have one.
+UNITS = {"f_n": "Hz", "delay": "s"}
+
 _WORDS = {
     "beta": "kinetic friction force over the load's amplitude, the mean of the set",
     "f_n": "natural frequency of the first mass on its spring alone, where r = 1",
     "zeta": "viscous damping ratio of every mode; of the first one where the system's own are held",
     "mu": "static over kinetic friction force",
     CONTACT_STIFFNESS: "stiffness of the spring in the contact over k1; on its bound: rigid",
+    "delay": "time by which the masses are measured later than the load, because the channels differ",
+    "gain": "gain of the masses over that of the load; friction is in units of the load",
 }
 
 
-def labelled(table: ForcedTable, fit: TableFit, unit: str | None) -> xr.Dataset:
-    """Dataset of a fit without its verdict; `unit` of the loads, if they were given."""
+def labelled(
+    table: ForcedTable, fit: TableFit, found: Errors, unit: str | None, hidden: list[str]
+) -> xr.Dataset:
+    """Dataset of a fit without its verdict.
+
+    found : errors as they are reported, see `shown_estimates`
+    unit : of the loads, if they were given
+    hidden : parameters that are not shown
+    """
     samples = fit.model.samples
-    values, found = shown_estimates(fit)
+    values, _ = shown_estimates(fit)
     solution = fit.solution._replace(values=values)
     names = parameter_names(table, fit.model.elastic)
     meanings = {name: _WORDS.get(name) or f"{_WORDS['beta']} {name[5:]}" for name in names}
-    units = tuple("Hz" if name == "f_n" else "1" for name in names)
+    units = tuple(UNITS.get(name, "1") for name in names)
     shown = found
     if not fit.model.elastic:
         errors = usable_errors(found, LAW, 1.0, bool(fit.problem.free[LAW]))
@@ -42,13 +55,13 @@ def labelled(table: ForcedTable, fit: TableFit, unit: str | None) -> xr.Dataset:
     ds = estimates(meanings, units, solution, shown, fit.problem.free, np.zeros(samples.row.size), "1")
     ds = ds.assign(_of_samples(table, fit))
     if unit is not None:
-        ds = ds.assign(_friction(table, fit, unit))
+        ds = ds.assign(_friction(table, fit, found, unit))
     sources = [
         f"{what} {'as given' if given else 'from the residuals'}"
         for what, given in zip(("of lags", "of amplitudes"), table.given, strict=True)
     ]
     ds.attrs["errors"] = ", ".join(sources)
-    return ds
+    return ds.drop_sel(parameter=hidden, parameter2=hidden)
 
 
 def _of_samples(table: ForcedTable, fit: TableFit) -> dict[str, xr.Variable]:
@@ -105,7 +118,9 @@ def _is_one(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return (np.abs(other - one) <= _SAME * np.abs(one)).all(axis=1)
 
 
-def friction_forces(table: ForcedTable, fit: TableFit, unit: str, stiffness: float) -> dict[str, xr.Variable]:
+def friction_forces(
+    table: ForcedTable, fit: TableFit, found: Errors, unit: str, stiffness: float
+) -> dict[str, xr.Variable]:
     """Friction force k1 x_F [N] of every set on a shaken base, with its error; `stiffness` k1 [N/m].
 
     Under a force it is already given in the unit of the force: nothing is added.
@@ -113,32 +128,37 @@ def friction_forces(table: ForcedTable, fit: TableFit, unit: str, stiffness: flo
     if fit.model.system.excitation != "base":
         return {}
     newtons = stiffness * conversion(checked_unit(unit, "length", "unit"), "m")
-    return _per_set(table, fit, "friction_force", "kinetic friction force k1 x_F", newtons, "N")
+    words = "kinetic friction force k1 x_F"
+    return _per_set(table, fit, found, ("friction_force", words), newtons, "N")
 
 
-def spring_stiffness(fit: TableFit, stiffness: float) -> dict[str, xr.Variable]:
+def spring_stiffness(fit: TableFit, found: Errors, stiffness: float) -> dict[str, xr.Variable]:
     """Stiffness of the spring in the contact [N/m], with its error; `stiffness` k1 [N/m]."""
     if not fit.model.elastic:
         return {}
-    values, found = shown_estimates(fit)
-    return spring_in_newtons(values, found, LAW, stiffness)
+    return spring_in_newtons(shown_estimates(fit)[0], found, LAW, stiffness)
 
 
-def _friction(table: ForcedTable, fit: TableFit, unit: str) -> dict[str, xr.Variable]:
+def _friction(table: ForcedTable, fit: TableFit, found: Errors, unit: str) -> dict[str, xr.Variable]:
     """Friction of every set in the unit of its loads: of a base a length, F/k1; of a force a force."""
     base = fit.model.system.excitation == "base"
     what, words = ("x_F", "F/k1") if base else ("friction_force", "F")
-    return _per_set(table, fit, what, f"kinetic friction, {words}", 1.0, unit)
+    return _per_set(table, fit, found, (what, f"kinetic friction, {words}"), 1.0, unit)
 
 
 def _per_set(
-    table: ForcedTable, fit: TableFit, what: str, words: str, scale: float, unit: str
+    table: ForcedTable, fit: TableFit, found: Errors, named: tuple[str, str], scale: float, unit: str
 ) -> dict[str, xr.Variable]:
-    """beta of every set as friction, times its load and `scale`, with the standard error."""
-    result = {}
+    """beta of every set as friction, times its load and `scale`, with the standard error.
+
+    named : the friction, and in words
+
+    There is no standard error where the gain is fitted: the load or the masses may have the wrong one.
+    """
+    result, known = {}, not fit.problem.free[GAIN]
     for k, name in enumerate(parameter_names(table, fit.model.elastic)[:F_N]):
-        own, size = name.replace("beta", what), table.load[k] * scale
-        result[own] = number(fit.solution.values[k] * size, words, unit)
-        error = fit.errors.standard_error[k] * size
+        own, size = name.replace("beta", named[0]), table.load[k] * scale
+        result[own] = number(fit.solution.values[k] * size, named[1], unit)
+        error = found.standard_error[k] * size if known else np.nan
         result[f"{own}_standard_error"] = number(error, f"standard error of {own}", unit)
     return result

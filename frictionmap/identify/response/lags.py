@@ -7,7 +7,7 @@ from ...errors import InputError
 from ...model.system import System
 from .data import ForcedTable, most_beyond
 from .fit import TableFit
-from .model import F_N, ZETA, Samples
+from .model import DELAY, F_N, GAIN, ZETA, Samples, corrected
 from .phase_inversion import MEANINGS, invert, reach
 
 #: Code of what is no lag, after those of `MEANINGS`.
@@ -43,7 +43,8 @@ def without(table: ForcedTable, samples: np.ndarray) -> ForcedTable:
 
 def friction_ratios(fit: TableFit) -> dict[str, xr.Variable]:
     """Friction ratios from single lags, at the frequency and damping that were fitted, mu = 1."""
-    samples, values = fit.model.samples, fit.solution.values
+    values = fit.solution.values
+    samples = corrected(fit.model, float(values[DELAY]), float(values[GAIN])).samples
     lags = np.flatnonzero(samples.is_phase)
     r = fit.model.rows.frequency[samples.row[lags]] / values[F_N]
     inversions = invert(fit.model.with_zeta(float(values[ZETA])), r, samples.value[lags], samples.mass[lags])

@@ -1,9 +1,11 @@
 """Amplitudes and lags of forced responses by the exact steady states, and their derivatives.
 
 A row of the data is one frequency of one set; a set has one friction force.  Parameters are the friction
-ratio beta of every set, at the mean of its loads, then f_n, zeta and one of the contact: `F_N`, `ZETA`, `LAW`
-from the end.  The last one is mu of a rigid contact.  Of a contact with a spring, for which mu = 1, it is the
-compliance of the spring, k1/kt: motions depend on it smoothly, and 0 is the rigid contact.
+ratio beta of every set, at the mean of its loads, then f_n, zeta, one of the contact and two of the channels:
+`F_N`, `ZETA`, `LAW`, `DELAY`, `GAIN` from the end.  The one of a rigid contact is mu; of a contact with a
+spring, for which mu = 1, it is the compliance of the spring, k1/kt; 0 is the rigid contact.  Masses may be
+measured later than the load, by a delay, and with another gain: lags are larger by 2 pi f times the delay,
+amplitudes by the gain.
 """
 
 from dataclasses import replace
@@ -16,7 +18,7 @@ from ...model.system import System
 from ...steady.points import States, steady_states
 from ..spring import STIFFEST
 
-F_N, ZETA, LAW = -3, -2, -1
+F_N, ZETA, LAW, DELAY, GAIN = -5, -4, -3, -2, -1
 
 #: Steps of differences, relative or absolute: steady states are exact to some 1e-12.
 _STEP = 1e-6
@@ -91,6 +93,7 @@ def evaluate(model: ForcedModel, values: np.ndarray, free: np.ndarray) -> Fitted
 
     Not finite where the model has no motion, or one at rest.
     """
+    model = corrected(model, float(values[DELAY]), float(values[GAIN]))
     r, beta = points_of(model.rows, values)
     step = _STEP * (1.0 + beta)
     low, high = np.maximum(beta - step, 0.0), beta + step
@@ -110,7 +113,21 @@ def evaluate(model: ForcedModel, values: np.ndarray, free: np.ndarray) -> Fitted
         if free[index] and values[index] >= least:
             change[index] = _slope(phasors, *_beside(model, values, index, least))
     slopes = _sample_slopes(model.samples, phasors, change)
+    slopes[:, DELAY] = np.where(model.samples.is_phase, _turns(model), 0.0) / model.samples.sigma
+    slopes[:, GAIN] = np.where(model.samples.is_phase, 0.0, 1.0 / values[GAIN]) / model.samples.sigma
     return Fitted(residual, np.where(free, slopes, 0.0), regime, phasors, here)
+
+
+def corrected(model: ForcedModel, delay: float, gain: float) -> ForcedModel:
+    """What channels that agree would have measured."""
+    samples = model.samples
+    off = np.where(samples.is_phase, _turns(model) * delay, np.log(gain))
+    return model._replace(samples=samples._replace(value=samples.value - off))
+
+
+def _turns(model: ForcedModel) -> np.ndarray:
+    """2 pi f [rad/s] of every sample."""
+    return 2.0 * np.pi * model.rows.frequency[model.samples.row]
 
 
 def points_of(rows: Rows, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

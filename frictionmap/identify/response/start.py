@@ -9,8 +9,9 @@ from itertools import product
 import numpy as np
 
 from ...steady.points import steady_states
+from ..parameters import ALIKE
 from .balance import balanced_phasors, stick_friction
-from .model import F_N, LAW, ZETA, ForcedModel, Samples, residuals
+from .model import DELAY, F_N, LAW, ZETA, ForcedModel, Samples, corrected, residuals
 
 #: Errors with which it looks, radian and relative, and the most that one number counts.
 _LOOK_PHASE, _LOOK_AMPLITUDE = 0.15, 0.2
@@ -47,13 +48,15 @@ def starts(model: ForcedModel, known: np.ndarray) -> list[np.ndarray]:
 
     known : (parameters,) values that are held; NaN of the others
     """
+    channels = np.where(np.isnan(known[DELAY:]), list(ALIKE.values()), known[DELAY:])
+    model = corrected(model, *channels.tolist())
     tempered = model._replace(samples=_tempered(model))
     frequencies = _candidates(model) if np.isnan(known[F_N]) else [known[F_N]]
     dampings = _DAMPINGS if np.isnan(known[ZETA]) else [known[ZETA]]
     first_laws = _COMPLIANCES if model.elastic else (1.0,)
     looked = []
     for zeta, law in product(dampings, first_laws if np.isnan(known[LAW]) else (known[LAW],)):
-        several = [np.append(known[:F_N], [f_n, zeta, law]) for f_n in frequencies]
+        several = [np.append(known[:F_N], [f_n, zeta, law, *channels]) for f_n in frequencies]
         looked += _best_frictions(tempered, several, [_everywhere(model, one, known) for one in several])
     looked.sort(key=lambda one: one[0])
     chosen: list[np.ndarray] = []
@@ -96,12 +99,14 @@ def closer(model: ForcedModel, near: np.ndarray, known: np.ndarray) -> list[np.n
 
     Motions appear and disappear with friction where mu > 1, and the sum has steps that slopes do not show.
     """
+    model = corrected(model, *near[DELAY:].tolist())
     samples = model.samples._replace(sigma=_CLOSER * model.samples.sigma)
     frequencies = near[F_N] * _F_BESIDE if np.isnan(known[F_N]) else known[F_N:ZETA]
     looked = []
     for mu in near[LAW] + _MU_BESIDE:
         if mu >= 1.0:
-            several = [np.append(near[:F_N], [f_n, near[ZETA], mu]) for f_n in frequencies]
+            rest = [near[ZETA], mu, *near[DELAY:]]
+            several = [np.append(near[:F_N], [f_n, *rest]) for f_n in frequencies]
             tried = [_around(values, known) for values in several]
             looked += _best_frictions(model._replace(samples=samples), several, tried)
     looked.sort(key=lambda one: one[0])

@@ -17,10 +17,10 @@ _kernels       all compiled code: numbers and arrays in, numbers and codes out
 model          what is simulated: system, matrices, modes, settings of the solver
 units          units of measurement: hertz and newtons for the ratios r and beta
 datasets       contents of datasets: names, types, units, valid values, provenance
-general        several contacts, springs in contacts, belts, periodic loads: boundaries, maps, motions
 roots          search for all roots of functions with known poles
 features       high-frequency limits, peak thresholds, invariant points: features that need no map
 theory         closed forms over frequency: beta_lim, beta_stick, continuous motion
+general        several contacts, springs in contacts, belts, periodic loads: boundaries, maps, motions
 steady         steady states: cells, maps, response curves, time histories; time and memory of a map
 stop_counts    borders between numbers of stops per cycle, as exact curves
 files          configurations; output files, reading, writing; summaries in words
@@ -70,11 +70,11 @@ if TYPE_CHECKING:
         plot_shares,
     )
     from .probabilities import shares
+    from .steady.boundaries import boundaries
     from .steady.curves import curves
     from .steady.response import response
     from .steady.sweep import sweep
     from .stop_counts.dataset import borders
-    from .theory.boundaries import boundaries
     from .theory.continuous_motion import continuous_motion
     from .units.scales import Units
 
@@ -123,7 +123,7 @@ _HOME = {
     "Units": "units.scales",
     "animate": "plot",
     "borders": "stop_counts.dataset",
-    "boundaries": "theory.boundaries",
+    "boundaries": "steady.boundaries",
     "continuous_motion": "theory.continuous_motion",
     "curves": "steady.curves",
     "explore": "explorer.notebook",

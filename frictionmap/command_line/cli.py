@@ -129,7 +129,7 @@ def _cost(options: Options, config: "Config") -> str:
 
 def _boundaries(options: Options, config: "Config", output: "Output") -> None:
     from ..files.summary import describe_reduction
-    from ..theory.boundaries import boundaries
+    from ..steady.boundaries import boundaries
 
     ds = boundaries(config.system, config.r, config.mu, units=config.units)
     if options.borders or config.borders:

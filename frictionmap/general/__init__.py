@@ -6,6 +6,8 @@ module           what is in it
 problem          a system over r as arrays for the kernels
 held             forces in contacts that do not slide, and the boundaries that follow from them
 loops            permanent sticking of contacts that close a loop
+closed_limits    friction without stops in closed form, where there is one
+no_stop          intervals of friction without stops
 boundaries       boundaries over r: permanent sticking, no stops, one-way sliding on belts
 partial          least friction at which one contact sticks while the others move
 starts           initial states: at rest, or in a large sliding motion
@@ -15,7 +17,7 @@ resting_starts   motions from many states in which a contact is at its limit of 
 dataset          maps and boundaries as labelled variables
 recorded         one steady state and the series of its steps, from the kernels
 steps            one steady state as the series of its steps
-limit_kinds      what ends the motion without stops
+limit_kinds      what ends the motion without stops, and which contact stops
 cycle            harmonics, works and phases of a steady state
 response         one steady state in time
 curves           response curves

@@ -6,21 +6,15 @@ import numpy as np
 
 from .. import checks
 from .._kernels.engine.policies import MOVING_START_CAP
-from .._kernels.general.no_stop import Search, fill_no_stop
 from .._kernels.general.problem import Problem
-from ..jobs import Job, Watch, run_jobs
+from ..jobs import Watch
 from ..model.system import System
 from .held import belt_limit, least_static_friction, stick_scales
-from .problem import ModalSystem, general_of, problem_of
+from .no_stop import find_intervals, no_intervals
+from .problem import ModalSystem, general_of
 
 #: Intervals without stops that are looked for in maps.
 INTERVALS = 4
-
-#: Where the boundary to sticking is infinite: beta up to which stops are looked for, over the sum of all
-#: loads.
-_HIGHEST = 8.0
-
-_CYCLES, _TOLERANCE = 100.0, 1e-12
 
 
 @dataclass(frozen=True)
@@ -33,6 +27,8 @@ class Boundaries:
     begins: np.ndarray  # (n_mu, n_r, intervals)
     ends: np.ndarray
     wall_velocity_lim: np.ndarray  # (n_r,) NaN without one contact on a belt
+    limit_kind: np.ndarray  # (n_mu, n_r) codes `regimes.LIMIT_KINDS`: what ends it
+    limiting_contact: np.ndarray  # (n_mu, n_r) int: which contact stops there, counted from 1; 0: none
 
 
 def friction_lines(system: System, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -93,27 +89,12 @@ def find_boundaries(
     needed = least_static_friction(system, r)
     by_contact = stick_scales(general, needed, mu)
     stick = by_contact.max(axis=2)
-    shape = (mu.size, r.size, intervals)
-    begins, ends = np.full(shape, np.nan), np.full(shape, np.nan)
-    if not general.elastic.any():
-        loads = sum(float(np.abs(vector).max()) for vector in general.forces.values())
-        loads += sum(abs(u) for u in general.base.values())
-        problem, _ = problem_of(system, r)
-        kinetic, static = friction_lines(system, mu)
-        highest = stick.max(axis=0)
-        top = np.where(np.isfinite(highest) & (highest > 0.0), highest, _HIGHEST * loads)
-        sticks = np.isfinite(highest) & (highest > 0.0) & (static == kinetic).all(axis=(1, 2)).any()
-        starts = sliding_states(problem, r, 1.0)
-        search = Search(kinetic, static, top, sticks, starts, _CYCLES, _TOLERANCE)
-        cancel = np.zeros(1, np.uint8)
-        jobs: list[Job] = [
-            (fill_no_stop, (i, i + 1, problem, search, begins, ends, cancel)) for i in range(r.size)
-        ]
-        try:
-            run_jobs(jobs, checks.threads(threads), lambda _: None, watch)
-        except BaseException:
-            cancel[0] = 1  # the kernel checks it at every frequency
-            raise
-    first = np.where(begins[:, :, 0] == 0.0, ends[:, :, 0], 0.0)
-    first = np.where(np.isnan(begins[:, :, 0]), 0.0, first)
-    return Boundaries(stick, by_contact, first, begins, ends, belt_limit(system, r))
+    if general.elastic.any():
+        found = no_intervals((mu.size, r.size, intervals))
+    else:
+        lines = friction_lines(system, mu)
+        found = find_intervals(system, r, mu, lines, needed, intervals, checks.threads(threads), watch)
+    first = np.where(found.begins[:, :, 0] == 0.0, found.ends[:, :, 0], 0.0)
+    return Boundaries(
+        stick, by_contact, first, found.begins, found.ends, belt_limit(system, r), found.kind, found.contact
+    )

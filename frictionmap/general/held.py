@@ -74,7 +74,7 @@ def held_forces_of(
         u = general.base.get(order, 0.0)
         right[:, :n] += u * (vectors.T * kt) @ moved
         right[:, n:] = u * moved[~elastic]
-        found = _solved(matrix, right)
+        found = solved(matrix, right)
         x = found[:, :n]
         force = np.empty((r.size, which.size), dtype=complex)
         force[:, ~elastic] = found[:, n:]
@@ -111,7 +111,7 @@ def sliding_phasors(system: System, r: np.ndarray) -> np.ndarray:
     moved = np.array([float(group.base) for group in general.groups])
     found = []
     for order in orders_of(general):
-        x = _solved(*_linear(system, system.modes.stiffness, order, r))
+        x = solved(*_linear(system, system.modes.stiffness, order, r))
         with np.errstate(invalid="ignore"):  # an infinite x
             found.append(x @ general.vectors.T - general.base.get(order, 0.0) * moved)
     return np.stack(found, axis=-1)
@@ -120,20 +120,17 @@ def sliding_phasors(system: System, r: np.ndarray) -> np.ndarray:
 def belt_limit(system: System, r: np.ndarray) -> np.ndarray:
     """Belt velocity from which the only contact slides one way, (n_r,): the largest speed without friction.
 
-    NaN where there is no belt.
+    NaN where there is no belt, infinite at an undamped resonance.
     """
     general = general_of(system)
     if general.count > 1 or not general.groups[0].first.wall_velocity:
         return np.full(r.size, np.nan)
-    orders = orders_of(general)
-    speeds = []
-    for order in orders:
-        matrix, load = _linear(system, system.modes.stiffness, order, r)
-        with np.errstate(all="ignore"):
-            x = np.linalg.solve(matrix, load[..., np.newaxis])[..., 0]
-        speeds.append(1j * order * (x @ general.vectors[0]))
+    orders = np.array(orders_of(general), dtype=float)
+    speeds = 1j * orders * sliding_phasors(system, r)[:, 0]
+    grows = ~np.isfinite(speeds).all(axis=1)
     sign = np.sign(general.groups[0].first.wall_velocity)
-    return largest(np.array(orders, dtype=float), sign * np.stack(speeds, axis=-1))
+    found = largest(orders, sign * np.where(grows[:, np.newaxis], 0.0, speeds))
+    return np.where(grows, np.inf, found)
 
 
 def _one_solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -144,7 +141,7 @@ def _one_solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
         return np.full_like(right, np.inf)
 
 
-def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+def solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Solve for every r; inf where the matrix is singular to rounding."""
     try:
         found = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]

@@ -3,6 +3,7 @@
 ===============  ======================================================================
 module           what is in it
 ===============  ======================================================================
+boundaries       `boundaries`: boundaries of the regimes over frequency, of any system
 kernel_data      a structure as arrays for the kernels
 quantity_data    quantities over a cycle: their positions in the results of the kernels
 quantity_limits  values that kernels do not compute: r = 0, resonances without a load

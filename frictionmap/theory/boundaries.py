@@ -1,12 +1,12 @@
-"""Boundaries of the regimes over frequency, with response functions and features, as datasets."""
+"""Boundaries of one rigid contact under one harmonic load, with response functions and features, as a
+dataset.
+"""
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 
 from .. import checks
 from ..datasets.labels import BOUNDARIES, LABELS
-from ..datasets.physical import with_units
 from ..datasets.variables import coordinate, label_variable, stamp
 from ..features import (
     all_mass_invariant_points,
@@ -18,8 +18,7 @@ from ..features import (
 )
 from ..model.modes import wrapped
 from ..model.system import System
-from ..units.axes import KINDS, ratios
-from ..units.scales import Units, scales_of
+from ..units.scales import Units
 from .boundary_curves import Curves, find_curves
 from .refinement import boundary_check
 
@@ -107,64 +106,8 @@ def held_variables(system: System, r: np.ndarray) -> dict[str, xr.Variable]:
     }
 
 
-def boundaries(
-    system: System, r: ArrayLike, mu: ArrayLike = 1.0, *, units: Units | None = None
-) -> xr.Dataset:
-    """Compute the boundaries of the regimes over frequency.
-
-    Parameters
-    ----------
-    system : System
-    r : array_like, shape (n_r,)
-        Frequency ratios omega/omega_1 [-], >= 0, increasing; omega_1 = sqrt(k_1/m_1) for a chain, else the
-        system's frequency_scale.
-    mu : array_like, shape (n_mu,)
-        Ratios of static to kinetic friction [-], >= 1, increasing.
-    units : Units, optional
-        Reference values that convert ratios to Hz and N, as in `sweep`; r may then be frequencies.
-
-    Returns
-    -------
-    xarray.Dataset
-        On (mu, r): `beta_lim` (continuous motion below it, theory.md 3), `beta_lim_modal` (T(5.65) with
-        (5.55)) and `beta_stick` (at or above it the contact can stay stuck, theory.md 4).
-
-        On r: the response function of z, `V` (real part) and `V_imag`, and `U`, `G`, `H`, `S`.
-
-        Features (theory.md 7): for each mode `natural_frequency` and `peak_threshold`; `held_frequency`; for
-        each mu the limits for r -> infinity, `beta_lim_high` and `beta_stick_high`; on (dof, r)
-        `held_response` and `held_phase`, amplitude and phase lag [radian] of each mass with the contact held,
-        infinite and NaN at its resonances.
-
-        Within the axis: `invariant_point`, where friction does not change z (with damping: its phase);
-        without damping, on (dof, mass_invariant), `mass_invariant_point`, where it does not change the
-        monoharmonic amplitude of a mass; on (dof, root) `invariant_first_harmonic`, where it does not change
-        the amplitude of the first harmonic; on (contact_root) `contact_invariant_first_harmonic`, the same
-        for z, theory.md 9.  Rows with fewer points are padded with NaN.  About 40 points plus one per mode
-        are listed, from the highest down, and those of masses for up to 12 masses; a variable without points
-        is omitted.  `frictionmap.features` computes all points.
-
-        Where C couples modes, `beta_lim_modal` and `peak_threshold`, which treat modes separately, are NaN.
-
-    Raises
-    ------
-    InputError
-        An axis is empty, not finite, not increasing or out of range.
-
-    Examples
-    --------
-    >>> import frictionmap as fm
-    >>> ds = fm.boundaries(fm.System(contact="joined-base-wall"), r=[0.5, 2.0])
-    >>> ds.beta_stick.values
-    array([[0.25, 4.  ]])
-    """
-    checks.instance(system, "system", System)
-    scales = scales_of(units, system)
-    r = checks.axis(ratios(r, "r", KINDS["r"], scales), "r", least=0.0, most=checks.LARGEST_RATIO)
-    mu = checks.axis(mu, "mu", least=1.0)
-    system.costs(r)
-    if system.general is not None:
-        return with_units(_general_boundaries(system, r, mu, units), scales)
+def one_contact_boundaries(system: System, r: np.ndarray, mu: np.ndarray, units: Units | None) -> xr.Dataset:
+    """Boundaries of a system of one rigid contact under one harmonic load; `r` and `mu` are checked axes."""
     found = find_curves(system, r, mu)
     functions = {
         "V": found.v.real,
@@ -182,32 +125,4 @@ def boundaries(
     title = "Boundaries of the motion regimes"
     ds = stamp(ds, "boundaries", title, system, {"r": r, "mu": mu}, units=units)
     ds.attrs |= boundary_check(system, r, mu)
-    return with_units(ds, scales)
-
-
-def _general_boundaries(system: System, r: np.ndarray, mu: np.ndarray, units: Units | None) -> xr.Dataset:
-    """Boundaries of a system with several contacts, springs, belts or harmonics."""
-    from ..general.boundaries import find_boundaries
-    from ..general.dataset import boundary_variables as general_variables
-    from ..general.dataset import contact_coordinates, refuse_static
-    from ..general.limit_kinds import find_limits
-    from ..general.loops import loop_stick_scales
-
-    assert system.general is not None
-    refuse_static(system.general, mu)
-    axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
-    coords = {name: coordinate(name, axis) for name, axis in axes.items()} | contact_coordinates(system)
-    if system.general.loop:
-        variables = {"beta_stick": label_variable("beta_stick", loop_stick_scales(system, r, mu))}
-    else:
-        limits = find_boundaries(system, r, mu)
-        variables = general_variables(system, limits)
-        if not system.general.elastic.any():
-            ended = find_limits(system, r, mu, limits)
-            variables["limit_kind"] = label_variable("limit_kind", ended.kind)
-            if system.general.count > 1:
-                variables["limiting_contact"] = label_variable("limiting_contact", ended.contact)
-    ds = xr.Dataset(variables, coords=coords)
-    return stamp(
-        ds, "boundaries", "Boundaries of the motion regimes", system, {"r": r, "mu": mu}, units=units
-    )
+    return ds

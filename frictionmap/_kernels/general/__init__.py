@@ -11,7 +11,8 @@ problem        a system over r, the constants of one r, the memory of a motion; 
 crossings      values of a series, and its first zero, with certainty
 series         series of one step: modes, forces, motion in the contacts
 pattern        which contacts slide and which are held after an event
-record         extremes, works and steps of a steady motion
+events         turns, stops and slowest instants of slides
+record         extremes, works, steps and events of a steady motion
 tangent        derivatives of the motion by its state at the section
 glide          intervals in which nothing happens, by tables
 follow         the motion from one phase of the load to another
@@ -27,6 +28,9 @@ single_mass    its steady state for mu = 1, by these tables
 steady         the steady state of one cell
 fill           the cells of a map
 partial        the force that holds one contact while the others move
+neighbours     steady states next to each other in friction, and what may lie between them
+reach          the steady state at a friction ratio, from one next to it
+ends           ends of intervals of friction without stops
 no_stop        friction ratios at which no contact stops
 samples        displacements of a recorded motion
 =============  =====================================================================================

@@ -167,3 +167,26 @@ def first_zero(series, at):
     if passed == _ALL:
         return NONE
     return approach(series, at, LEADING[passed] * _STEP)
+
+
+@kernel
+def next_turn(series, at, x, sign, scratch, row):
+    """First zero after x > 0 of the slope of a series whose slope is zero at x and then has this sign.
+
+    Parameters
+    ----------
+    series, at : series and its row
+    x, sign : see above
+    scratch, row : its row is filled
+    """
+    for k in range(TERMS):
+        scratch[row, k] = sign * (k + 1.0) * series[at, k + 1]
+    bend = 0.0
+    bound = 0.0
+    for k in range(TERMS - 1, 0, -1):
+        bend = bend * x + k * scratch[row, k]
+        bound += k * (k - 1.0) * abs(scratch[row, k])
+    if bend <= 0.0:
+        return NONE
+    x = x + 2.0 * bend / bound if bound > 0.0 else NONE
+    return approach(scratch, row, x) if x < 1.0 else NONE

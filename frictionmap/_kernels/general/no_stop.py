@@ -1,218 +1,268 @@
-"""Friction with which no contact stops: intervals of beta, from the motions themselves (theory.md 11)."""
+"""Friction with which no contact stops: intervals of beta, from the motions themselves (theory.md 11).
+
+The steady state for mu = 1 is followed from beta = 0 up, and a step is shortened until nothing unseen can lie
+between two motions (`neighbours`).  A step of the motions is one of beta.
+"""
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
-from .follow import MOVED, NEAREST_STOP, STOPS
-from .record import NOTHING
-from .series import Friction
-from .steady import REPEATS, begin_row, from_rest, make_tools, solve
+from .ends import (
+    RESOLVED,
+    change_at_larger_static_friction,
+    close_in,
+    is_certain,
+    open_interval,
+    pass_end,
+    put_between,
+)
+from .neighbours import (
+    GROWS,
+    HAS_STOPS,
+    LINKED,
+    NOT_FOUND,
+    SLIDES,
+    TURNING,
+    copy_neighbour,
+    doubt_between,
+    keep_at_rest,
+    link,
+    way_to_stop,
+)
+from .reach import (
+    AFTER_END,
+    EQUAL,
+    HERE,
+    INSIDE_END,
+    LOOSE,
+    LOWEST,
+    NEXT,
+    keep_unknown,
+    make_walk,
+    margin,
+    reach,
+    reach_first,
+)
+from .steady import begin_row
 
-#: Nodes in beta at which the motion is tried: so many in geometric progression from _LOWEST of the top up,
-#: then equally spaced ones.
-_GEOMETRIC, _EQUAL, _LOWEST = 32, 48, 1e-6
-NODES = _GEOMETRIC + _EQUAL
+#: Places in `Walk.pace`: the next step; a friction ratio whose motion is not like that HERE; where to go on
+#: after friction ratios at which none was found, 0 where there are none.
+_STEP, _WALL, _LEAP = 0, 1, 2
 
-#: Trials around an end at most, of which each third halves the interval; and the first distance of a trial
-#: from where the end should be, over that from the last trial inside.
-_TRIALS = 160
-_OFF = 0.01
+#: First step, over the change at which a contact begins to stop if all goes on as it begins, or over the
+#: scale: the rates by which the next steps are judged are known from it.
+_FIRST = 0.01
 
+#: Largest change of a step from one to the next, and doubt that is aimed at: some less than what is accepted,
+#: since it changes with the square of the step.
+_GROWS, _SHRINKS, _AIM = 2.5, 0.2, 0.8
 
-class Search(NamedTuple):
-    """Friction over beta, as in `fill.Grid`, and where to search."""
+#: Where contacts stop, the largest step over beta: contacts that rest say nothing about what the others do.
+_LARGEST = 0.5
 
-    kinetic: np.ndarray  # (N, 2)
-    static: np.ndarray  # (n_mu, N, 2)
-    top: np.ndarray  # (n_r,) largest beta that is tried
-    sticks: np.ndarray  # (n_r,) bool: whether all contacts stick permanently at `top`: motions there creep
-    starts: np.ndarray  # (n_r, 2, m)
-    cycles: float
-    tolerance: float
+#: A step this much longer than the way to an end passes it.
+_BEYOND = 1.05
+
+#: Change of beta over beta below which motions that are not alike count as next to each other: where two
+#: contacts turn together margins jump.
+_LEAST = 1e-8
+
+#: The same before friction ratios at which no motion is found, where contacts stop: some creeping motions are
+#: not. The search goes on at this multiple of beta.
+_LEAST_UNKNOWN, _LEAPS = 1e-3, 1.25
 
 
 @kernel
-def _node(top, k):
-    """Friction ratio of node k = 0..NODES."""
-    if k > _GEOMETRIC:
-        return top * (k - _GEOMETRIC) / _EQUAL
-    return top * math.pow(_LOWEST, 1.0 - k / (_GEOMETRIC + 1.0)) / _EQUAL
+def _first_step(i, search, walk):
+    """First step from the motion HERE."""
+    motions = walk.motions
+    beta = motions.beta[HERE]
+    if search.known[i] == search.known[i]:
+        return AFTER_END * beta
+    nearest = 0.0
+    if motions.kind[HERE] == SLIDES:
+        for j in range(search.kinetic.shape[0]):
+            if search.kinetic[j, 1] == 0.0:
+                nearest = max(nearest, motions.margins[HERE, TURNING, j])
+    return _FIRST * (beta / nearest if nearest > 0.0 else search.scale[i])
 
 
 @kernel
-def _margin(search, m, beta, kept, k):
-    """Distance from a stop, > 0 where no contact stops, from what was kept of the motion in row k."""
-    if kept[k, 0] > 0.0 or kept[k, 0] != kept[k, 0]:
-        return -1.0
-    worst = 0.0
-    for j in range(search.kinetic.shape[0]):
-        kinetic = search.kinetic[j, 0] * beta + search.kinetic[j, 1]
-        static = search.static[m, j, 0] * beta + search.static[m, j, 1]
-        if kinetic > 0.0:
-            worst = max(worst, static / kinetic * kept[k, 1 + j])
-    return 1.0 - worst
-
-
-@kernel
-def _try(problem, i, search, beta, near, friction, tools, kept, k):
-    """Keep the number of stops, and how near the turns are to one, of the motion with mu = 1 at beta.
+def _begin(problem, i, search, found, walk):
+    """Find the first motion, and begin the intervals that it lies in.
 
     Parameters
     ----------
-    problem, i : Problem, index of r
-    search : Search
-    beta : friction ratio
-    near : whether the state in memory is that of a steady state near by
-    friction : Friction, filled
-    tools : Tools, after `begin_row`
-    kept, k : row k is filled: stops, NaN without a steady state; NEAREST_STOP of every contact
+    problem, i, search, found : Problem, index of r, Search, Intervals
+    walk : Walk
     """
-    memory = tools.memory
-    contacts = problem.spring.size
-    for j in range(contacts):
-        friction.kinetic[j] = search.kinetic[j, 0] * beta + search.kinetic[j, 1]
-        friction.static[j] = friction.kinetic[j]
-    if not near:
-        from_rest(problem, tools.row, friction, search.starts[i], tools.work, memory, tools.record, NOTHING)
-    found, _, _ = solve(problem, friction, search.cycles, search.tolerance, tools, NOTHING)
-    kept[k, 0] = math.nan
-    if found.status != REPEATS:
-        return False
-    kept[k, 0] = 0.0
-    for j in range(contacts):
-        kept[k, 0] += memory.counts[STOPS, j]
-        if memory.counts[MOVED, j] == 0.0:
-            kept[k, 0] += 1.0  # it sticks permanently
-        kept[k, 1 + j] = memory.counts[NEAREST_STOP, j]
-    return True
+    motions = walk.motions
+    known = search.known[i] == search.known[i]
+    reach_first(problem, i, search, walk)
+    if known and motions.kind[HERE] == SLIDES:  # a further interval, from between here and the known end on
+        keep_unknown(max(search.known[i], LOWEST * search.scale[i]), walk, HERE, NEXT)
+        put_between(walk, HERE, NEXT)
+        close_in(problem, i, search, EQUAL, walk, RESOLVED)
+        copy_neighbour(motions, INSIDE_END, HERE)
+    for m in range(walk.ended.size):
+        walk.ended[m], walk.open[m] = 1 if known else 0, 0
+        if margin(search, m, walk, HERE) > 0.0:
+            open_interval(found, i, m, motions.beta[HERE] if known else 0.0, walk)
+    walk.pace[_STEP], walk.pace[_WALL], walk.pace[_LEAP] = _first_step(i, search, walk), math.inf, 0.0
 
 
 @kernel
-def _end(problem, i, search, m, inside, outside, friction, tools, kept):
-    """End of an interval between a beta without stops and one with.
+def _target(walk, top):
+    """Friction ratio of the next motion."""
+    beta, pace = walk.motions.beta[HERE], walk.pace
+    if pace[_LEAP] > 0.0:
+        return min(pace[_LEAP], top)
+    if beta >= pace[_WALL]:
+        pace[_WALL] = math.inf
+    near = pace[_WALL] - beta <= _LEAST * pace[_WALL]
+    return min(beta + pace[_STEP], pace[_WALL] if near else 0.5 * (beta + pace[_WALL]), top)
 
-    Where a turn becomes a stop, the margin goes to zero there: trials on both sides of where it should be
-    zero close in on it.  Where a slide begins to touch zero velocity, it does not: the interval is halved.
+
+@kernel
+def _shorten_or_leap(walk, target):
+    """Go on after no motion was found at the target: with a shorter step, or beyond."""
+    step = target - walk.motions.beta[HERE]
+    least = _LEAST if walk.motions.kind[HERE] == SLIDES else _LEAST_UNKNOWN
+    if walk.pace[_LEAP] > 0.0 or step <= least * target:
+        walk.pace[_LEAP] = _LEAPS * target
+    else:
+        walk.pace[_STEP] = 0.25 * step
+
+
+@kernel
+def _next_step(step, doubt, walk):
+    """The step after one of this doubt was accepted."""
+    motions = walk.motions
+    beta = motions.beta[HERE]
+    if motions.kind[HERE] == GROWS:
+        return _GROWS * step
+    if motions.linked[HERE] != LINKED:
+        return AFTER_END * beta
+    step *= min(_GROWS, math.sqrt(_AIM / doubt)) if doubt > 0.0 else _GROWS
+    if motions.kind[HERE] != SLIDES:
+        return min(step, _LARGEST * beta)
+    way = way_to_stop(motions, HERE, walk.levels, EQUAL, 1.0)
+    return min(step, max(_BEYOND * way, AFTER_END * beta))
+
+
+@kernel
+def _pass(problem, i, search, found, walk, linked):
+    """Pass from the motion HERE to NEXT of the same kind, with what lies between; HERE is replaced.
 
     Parameters
     ----------
-    problem, i : Problem, index of r
-    search, m : Search, index of mu
-    inside, outside : friction ratios without and with stops
-    friction, tools, kept : see `_try`
+    problem, i, search, found : Problem, index of r, Search, Intervals
+    walk : Walk
+    linked : whether the changes from one to the other are rates
     """
-    near = _try(problem, i, search, inside, False, friction, tools, kept, NODES + 1)
-    margin = _margin(search, m, inside, kept, NODES + 1)
-    guess = math.nan
-    off = _OFF
-    for count in range(_TRIALS):
-        beta = guess + off * (guess - inside)
-        aimed = count % 3 < 2 and min(inside, outside) < beta < max(inside, outside)
-        if not aimed:
-            beta = 0.5 * (inside + outside)
-        if beta == inside or beta == outside:
+    motions = walk.motions
+    if motions.kind[HERE] == SLIDES or motions.kind[HERE] == GROWS:
+        change_at_larger_static_friction(problem, i, search, found, walk, HERE, NEXT)
+    if linked:
+        link(motions, HERE, NEXT)
+    copy_neighbour(motions, NEXT, HERE)
+
+
+@kernel
+def _go_on(problem, i, search, found, walk, blind):
+    """Pass to the motion NEXT, or shorten the step.
+
+    Parameters
+    ----------
+    problem, i, search, found : Problem, index of r, Search, Intervals
+    walk : Walk
+    blind : whether motions between are not found: nothing can be seen of what lies there
+    """
+    motions, pace = walk.motions, walk.pace
+    step = motions.beta[NEXT] - motions.beta[HERE]
+    least = _LEAST * motions.beta[NEXT]
+    here, there = motions.kind[HERE], motions.kind[NEXT]
+    if (here == HAS_STOPS or here == NOT_FOUND) != (there == HAS_STOPS):
+        if is_certain(problem, i, search, walk, least) or blind:
+            pass_end(problem, i, search, found, walk)
+            pace[_STEP], pace[_WALL] = AFTER_END * motions.beta[HERE], math.inf
+        else:
+            pace[_STEP] = 0.5 * step
+        return
+    doubt = 0.0
+    if not blind and here != GROWS:
+        doubt = doubt_between(walk.tools.row, motions, HERE, NEXT, False)
+    if doubt <= 1.0 or step <= least:
+        _pass(problem, i, search, found, walk, doubt <= 1.0 and not blind and here != GROWS)
+        pace[_STEP] = _next_step(step, doubt, walk)
+    elif doubt == math.inf:
+        pace[_WALL] = motions.beta[NEXT]
+    else:
+        pace[_STEP] = step * max(_SHRINKS, math.sqrt(_AIM / doubt))
+
+
+@kernel
+def _all_ended(found, walk):
+    """Whether the wanted number of intervals has ended for every mu."""
+    ended = True
+    for m in range(walk.ended.size):
+        ended = ended and walk.ended[m] == found.begins.shape[2]
+    return ended
+
+
+@kernel
+def _walk_up(problem, i, search, found, walk):
+    """Find the intervals at r[i].
+
+    Parameters
+    ----------
+    problem, i, search, found : Problem, index of r, Search, Intervals
+    walk : Walk
+    """
+    motions = walk.motions
+    _begin(problem, i, search, found, walk)
+    top = search.top[i]
+    while motions.settled[HERE] == 0 and motions.beta[HERE] < top and not _all_ended(found, walk):
+        target = _target(walk, top)
+        if target == top and search.sticks[i]:
+            keep_at_rest(top, motions, NEXT)
+        else:
+            reach(problem, i, search, target, LOOSE, walk, HERE, NEXT)
+        if motions.kind[NEXT] != NOT_FOUND:
+            blind = walk.pace[_LEAP] > 0.0 or motions.kind[HERE] == NOT_FOUND
+            walk.pace[_LEAP] = 0.0
+            _go_on(problem, i, search, found, walk, blind)
+        elif target < top:
+            _shorten_or_leap(walk, target)
+        else:
             break
-        near = _try(problem, i, search, beta, near, friction, tools, kept, NODES + 1)
-        now = _margin(search, m, beta, kept, NODES + 1)
-        if aimed and (now > 0.0) == (off < 0.0):
-            off *= -0.1
-        elif aimed:
-            off *= 10.0 if abs(off) < _OFF else -1.0
-        if now > 0.0:
-            guess = beta + now * (beta - inside) / (margin - now)
-            inside, margin = beta, now
-        else:
-            outside = beta
-    return inside
+    for m in range(walk.ended.size):
+        if walk.open[m] != 0:
+            found.ends[m, i, walk.ended[m]] = math.inf
 
 
 @kernel
-def _ends_at(i, search, m, kept, k):
-    """Whether an interval without stops ends between the nodes k - 1 and k."""
-    if k == 0 or _margin(search, m, _node(search.top[i], k), kept, k) > 0.0:
-        return False
-    return _margin(search, m, _node(search.top[i], k - 1), kept, k - 1) > 0.0
-
-
-@kernel
-def _enough_end(i, search, wanted, kept, last):
-    """Whether the wanted number of intervals ends between the nodes 0..last, for every mu."""
-    for m in range(search.static.shape[0]):
-        count = 0
-        for k in range(1, last + 1):
-            if _ends_at(i, search, m, kept, k):
-                count += 1
-        if count < wanted:
-            return False
-    return True
-
-
-@kernel
-def _try_nodes(problem, i, search, wanted, friction, tools, kept):
-    """Try the nodes until the wanted number of intervals has ended for every mu; return the last one tried.
-
-    Parameters
-    ----------
-    problem, i, search : Problem, index of r, Search
-    wanted : number of intervals
-    friction, tools, kept : see `_try`
-    """
-    near = False
-    for k in range(NODES + 1):
-        if k == NODES and search.sticks[i]:
-            kept[k, 0] = 1.0
-        else:
-            near = _try(problem, i, search, _node(search.top[i], k), near, friction, tools, kept, k)
-        ended = False
-        for m in range(search.static.shape[0]):
-            ended = ended or _ends_at(i, search, m, kept, k)
-        if ended and _enough_end(i, search, wanted, kept, k):  # the number changes where one ends
-            return k
-    return NODES
-
-
-@kernel
-def _fill(first, last, problem, search, begins, ends, tools, friction, kept, cancel):
+def _fill(first, last, problem, search, found, walk, cancel):
     """Fill the intervals; see `fill_no_stop`.
 
     Parameters
     ----------
-    first, last, problem, search, begins, ends, cancel : see `fill_no_stop`
-    tools, friction : Tools, Friction; their content does not matter
-    kept : see `_try`
+    first, last, problem, search, found, cancel : see `fill_no_stop`
+    walk : Walk; its content does not matter
     """
-    problem, search, tools, friction = packed(problem), packed(search), packed(tools), packed(friction)
+    problem, search, found, walk = packed(problem), packed(search), packed(found), packed(walk)
     for i in range(first, last):
         if cancel[0] != 0:
             return
         if problem.r[i] == 0.0:
             continue
-        begin_row(problem, i, tools)
-        last = _try_nodes(problem, i, search, begins.shape[2], friction, tools, kept)
-        for m in range(search.static.shape[0]):
-            count = 0
-            margin = _margin(search, m, _node(search.top[i], 0), kept, 0)
-            if margin > 0.0:
-                begins[m, i, 0] = 0.0
-            for k in range(1, last + 1):
-                before, here = _node(search.top[i], k - 1), _node(search.top[i], k)
-                now = _margin(search, m, here, kept, k)
-                if margin > 0.0 and now <= 0.0 and count < begins.shape[2]:
-                    ends[m, i, count] = _end(problem, i, search, m, before, here, friction, tools, kept)
-                    count += 1
-                if margin <= 0.0 and now > 0.0 and count < begins.shape[2]:
-                    begins[m, i, count] = _end(problem, i, search, m, here, before, friction, tools, kept)
-                margin = now
-            if margin > 0.0 and count < begins.shape[2]:
-                ends[m, i, count] = math.inf
+        begin_row(problem, i, walk.tools)
+        _walk_up(problem, i, search, found, walk)
 
 
 @entry
-def fill_no_stop(first, last, problem, search, begins, ends, cancel):
+def fill_no_stop(first, last, problem, search, found, cancel):
     """Fill the intervals of beta in which no contact stops, at the frequencies first..last-1.
 
     Parameters
@@ -220,11 +270,8 @@ def fill_no_stop(first, last, problem, search, begins, ends, cancel):
     first, last : range of r
     problem : Problem
     search : Search
-    begins, ends : (n_mu, n_r, intervals) filled, NaN where there are fewer
+    found : Intervals, filled
     cancel : (1,) set by another thread to end the computation
     """
-    tools = make_tools(problem, np.empty((0, problem.squares.size)), 0)
-    contacts = problem.spring.size
-    friction = Friction(np.empty(contacts), np.empty(contacts))
-    kept = np.zeros((NODES + 2, 1 + contacts))
-    _fill(first, last, problem, search, begins, ends, tools, friction, kept, cancel)
+    walk = make_walk(problem, search.static.shape[0])
+    _fill(first, last, problem, search, found, walk, cancel)

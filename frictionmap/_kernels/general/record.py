@@ -1,4 +1,4 @@
-"""What is kept of a steady motion while it is followed: extreme displacements, and sliding distances."""
+"""What is kept of a steady motion while it is followed: extreme displacements, sliding distances, events."""
 
 from typing import NamedTuple
 
@@ -6,11 +6,12 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from ..compiler.vectors import LANES, filled, load, magnitude, store, total
-from .crossings import NONE, approach, first_zero, value_at
+from .crossings import first_zero, next_turn, value_at
+from .events import MOST, Events, list_step, make_events
 from .problem import LONG, TERMS, WIDTH
 from .series import first_contact_row
 
-NOTHING, RANGES, STEPS, FORCES = 0, 1, 2, 3
+NOTHING, RANGES, STEPS, FORCES, EVENTS = 0, 1, 2, 3, 4
 
 _SLOPE, _VALUE = 5, 6  # rows of the scratch
 
@@ -29,7 +30,7 @@ WEIGHTS = 0.5 * _LEGENDRE[1]
 class Record(NamedTuple):
     """Extremes of the displacements in N contacts, then of the n masses."""
 
-    active: np.ndarray  # (1,) int: NOTHING, RANGES, STEPS or FORCES
+    active: np.ndarray  # (1,) int: NOTHING, RANGES, STEPS, FORCES or EVENTS
     ranges: np.ndarray  # (2, N + n) lowest and highest
     distance: np.ndarray  # (N,) sliding distances
     slips: np.ndarray  # (3, N) sliding distances of single slips, see `_keep_slip`
@@ -40,11 +41,12 @@ class Record(NamedTuple):
     count: np.ndarray  # (1,) steps there were; more than `most` do not fit
     forces: np.ndarray  # (2, 2 N) lowest and highest f - limit nu, f + limit nu, where FORCES are kept
     limits: np.ndarray  # (N,) limit of every contact; 0: lowest and highest force
+    events: Events  # where EVENTS are kept; see `make_list`
 
 
 @entry
-def make_record(problem, masses, most):
-    """Allocate a record for `most` steps; `masses` (n, m) are the displacements of the masses per mode."""
+def _make(problem, masses, most, listed):
+    """Allocate a record; see `make_record`, `make_list`."""
     contacts = problem.spring.size
     size = contacts + masses.shape[0]
     rows = problem.push.shape[0] + problem.push.shape[1] + 4 * contacts
@@ -52,7 +54,20 @@ def make_record(problem, masses, most):
         np.zeros(1, np.int64), np.zeros((2, size)), np.zeros(contacts), np.zeros((3, contacts)),
         np.zeros((2, contacts)), masses, np.zeros((most, rows, WIDTH)), np.zeros((most, contacts + 1)),
         np.zeros(1, np.int64), np.zeros((2, 2 * contacts)), np.zeros(contacts),
+        make_events(contacts, listed),
     )  # fmt: skip
+
+
+@entry
+def make_record(problem, masses, most):
+    """Allocate a record for `most` steps; `masses` (n, m) are the displacements of the masses per mode."""
+    return _make(problem, masses, most, 0)
+
+
+@entry
+def make_list(problem):
+    """Allocate a record of events alone."""
+    return _make(problem, np.empty((0, problem.squares.size)), 0, MOST)
 
 
 @kernel
@@ -86,22 +101,6 @@ def include(ends, i, value):
     """Widen range i of `ends` (2, ...) to include a value."""
     ends[0, i] = min(ends[0, i], value)
     ends[1, i] = max(ends[1, i], value)
-
-
-@kernel
-def _next_turn(series, at, x, sign, scratch):
-    """First zero after x > 0 of the slope of a displacement that is zero at x and then has this sign."""
-    for k in range(TERMS):
-        scratch[_SLOPE, k] = sign * (k + 1.0) * series[at, k + 1]
-    bend = 0.0
-    bound = 0.0
-    for k in range(TERMS - 1, 0, -1):
-        bend = bend * x + k * scratch[_SLOPE, k]
-        bound += k * (k - 1.0) * abs(scratch[_SLOPE, k])
-    if bend <= 0.0:
-        return NONE
-    x = x + 2.0 * bend / bound if bound > 0.0 else NONE
-    return approach(scratch, _SLOPE, x) if x < 1.0 else NONE
 
 
 @kernel
@@ -155,7 +154,7 @@ def _keep_range(series, at, end, size, ends, i, scratch):
     while x < end:
         include(ends, i, value_at(series, at, x))
         sign = -sign
-        x = _next_turn(series, at, x, sign, scratch)
+        x = next_turn(series, at, x, sign, scratch, _SLOPE)
 
 
 @kernel
@@ -281,6 +280,9 @@ def mirror(record):
 @kernel
 def record_step(problem, row, work, end, record):
     """Include the present step, up to `end` in x."""
+    if record.active[0] == EVENTS:
+        list_step(problem, row, work, end, record.events)
+        return
     if record.active[0] == FORCES:
         _keep_forces(problem, work, end, record)
         return

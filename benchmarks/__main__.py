@@ -34,6 +34,7 @@ BENCHMARKS = (
     "first_minute",
     "coupling",
     "coverage",
+    "consistency",
 )
 
 

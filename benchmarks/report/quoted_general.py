@@ -158,3 +158,31 @@ def general_lines(general: dict) -> list[str]:
         "",
         "![Several contacts, elastic contacts and periodic loads](../benchmarks/results/general.png)",
     ]  # fmt: skip
+
+
+def _consistency_rows(kinds: dict) -> Iterator[tuple[str, ...]]:
+    """What must be fulfilled, and how often it is not, by kind of contacts."""
+    for words, faults, whole in (
+        ("cells without an answer", "cells without an answer", "cells"),
+        ("multipliers above 1", "multipliers above 1", "multipliers"),
+        ("cells with another bit in any of three cuts of the map", "cells with other bits in a cut", "cells"),
+        ("motions with friction above its limit", "motions with friction above its limit", "motions"),
+    ):
+        yield words, *(f"{kind[faults]} of {kind[whole]:,}" for kind in kinds.values())
+
+
+def consistency_lines(consistency: dict) -> list[str]:
+    """Lines of the section on what every map must fulfil."""
+    kinds = consistency["random cells"]
+    systems = sum(kind["systems"] for kind in kinds.values())
+    return [
+        "",
+        "### Several contacts: what must be true of every cell",
+        "",
+        f"For mu = 1 every cell has a steady state that attracts, and does not depend on the cells beside "
+        f"it. {systems:,} random chains of 1 to 4 masses with up to 3 rigid and 2 elastic contacts, some of "
+        "them parallel to each other, on belts or under varying normal loads, were checked.",
+        *markdown(("to be fulfilled in random cells", *kinds), list(_consistency_rows(kinds))),
+        "",
+        "![Largest multipliers](../benchmarks/results/consistency.png)",
+    ]

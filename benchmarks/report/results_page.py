@@ -16,7 +16,7 @@ from .quoted_coverage import coverage_lines
 from .quoted_design import design_lines
 from .quoted_errors import accuracy_lines, steady_lines, stress_lines
 from .quoted_first_minute import first_minute_lines
-from .quoted_general import general_lines
+from .quoted_general import consistency_lines, general_lines
 from .quoting import duration, markdown, rounded_off, two_digits
 
 PAGE = ROOT / "docs" / "results.md"
@@ -28,6 +28,7 @@ QUOTED = (
     "peers",
     "structures",
     "general",
+    "consistency",
     "design",
     "accuracy",
     "stress",
@@ -389,6 +390,8 @@ def block(results: Path) -> str:
         lines += _peer_lines(peers, structures)
     if "general" in found:
         lines += general_lines(found["general"])
+    if "consistency" in found:
+        lines += consistency_lines(found["consistency"])
     if "design" in found:
         lines += design_lines(found["design"])
     for name, quote in (("accuracy", accuracy_lines), ("stress", stress_lines), ("steady", steady_lines)):

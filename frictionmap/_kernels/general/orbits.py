@@ -16,8 +16,9 @@ REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED, AVERAGED = 0, 1, 2, 3, 4
 #: Outcome of Newton's method: a contact slides in one direction, ever less; see `creep`.
 DRIFTS = 5
 
-#: Newton steps at most, and the largest part of the distance before that may be left after each.  Below _LAST
-#: more may be left once: the velocity of a contact that hardly slides depends on the square of the rest.
+#: Newton steps at most, and the largest part of the distance before that may be left after each.  Below
+#: _ROUNDED more may be left once: the velocity of a contact that hardly slides depends on the square of the
+#: rest.
 _MOST_STEPS = 12
 _LESS = 0.5
 
@@ -29,8 +30,12 @@ LARGEST = 1e10
 #: of a disturbance that a return takes away.
 MEASURED = 1e-12
 
-#: A step below this is the last one: the next would be of the size of its square.  `measure` looks after it.
-_LAST = 1e-7
+#: A step below this is the last one: the next would be of the size of its square, far below the distance of
+#: two states that are rounded alike, see `return_map.round_state`.  `measure` looks after it.
+_LAST = 1e-9
+
+#: A distance that does not shrink is that of rounding errors, once, below this.
+_ROUNDED = 1e-7
 
 #: A steady state that is back to this share of its size after a part of its period has that period.
 RETURNED = 1e-9
@@ -119,7 +124,7 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
         if distance == 0.0 or not distance < _LESS * last:
             if distance <= tolerance:
                 return DRIFTS if drifting else REPEATS, cycles
-            if missed or not distance < _LAST:
+            if missed or not distance < _ROUNDED:
                 return NO_REPEAT, cycles
             missed = True
         last = distance

@@ -15,7 +15,7 @@ from ..compiler import entry, kernel
 from ..structure.newton import solve_linear
 from .creep import WITHOUT_LIMIT
 from .follow import FOLLOWED, MOVED
-from .orbits import REPEATS, newton
+from .orbits import NO_REPEAT, REPEATS, newton
 from .pattern import stop_exactly
 from .problem import SECTION, padded, set_channels
 from .record import FORCES, NOTHING, clear_record, varies
@@ -322,7 +322,8 @@ def _note_creep(problem, friction, memory, places):
         high, low = _sides(problem, friction, places, j)
         excess, way = max(high, low), 1.0 if high > low else 2.0
         moved = memory.counts[MOVED, j]
-        if moved != 0.0 and (moved != way or excess <= 0.0):
+        # an elastic contact at its limit may be taken along by one that creeps
+        if moved != 0.0 and (moved != way or excess < -_ROUNDING * friction.static[j]):
             creep[_PERIODS, j] = creep[_SLOWLY, j] = 0.0
             continue
         if creep[_PERIODS, j] % _CREEPS == 0.0:
@@ -356,7 +357,7 @@ def _is_settled(problem, friction, difference, safety, places):
             continue
         if excess > 0.0 and places.creep[_SLOWLY, j] != 0.0:
             creeping += 1
-        elif excess <= 0.0 and places.creep[_PERIODS, j] >= _CREEPS:
+        elif excess <= _ROUNDING * limit and places.creep[_PERIODS, j] >= _CREEPS:
             waiting += 1
         else:
             return False
@@ -411,7 +412,7 @@ def follow_to_rest(problem, row, friction, halves, cycles, safety, work, memory,
     """
     followed, still = 0.0, 0.0
     for j in range(places.rests.size):
-        places.creep[_PERIODS, j] = 0.0
+        places.creep[_PERIODS, j] = places.creep[_SLOWLY, j] = 0.0
     while True:
         difference = _compare(problem, row, work, memory, places)
         if followed > 0.0:
@@ -453,7 +454,7 @@ def _move_to_zero(problem, row, work, memory, places):
 
 
 @kernel
-def keep_orbit_anew(problem, row, friction, halves, tolerance, work, memory, record, places):
+def keep_orbit_anew(problem, row, friction, halves, tolerance, bits, work, memory, record, places):
     """Keep a steady state as `keep_orbit` does, with bits that do not depend on how it was found.
 
     It is found anew from its rounded state at the place 0.
@@ -462,6 +463,7 @@ def keep_orbit_anew(problem, row, friction, halves, tolerance, work, memory, rec
     ----------
     problem, row, friction, halves, work, memory, record, places : see `keep_orbit`
     tolerance : see `steady.find`
+    bits : see `round_state`
 
     Returns
     -------
@@ -469,12 +471,12 @@ def keep_orbit_anew(problem, row, friction, halves, tolerance, work, memory, rec
     """
     fill_flexibility(problem, places)
     _move_to_zero(problem, row, work, memory, places)
-    round_state(memory)
-    if not stop_contacts(problem, row, work, memory):
-        return False, 0.0
     keep_limits(friction, places)
     _lift_limits(friction, places)
-    status, cycles = newton(problem, row, friction, halves, tolerance, work, memory, record)
+    round_state(problem, friction, memory, bits)
+    status, cycles = NO_REPEAT, 0.0
+    if stop_contacts(problem, row, work, memory):
+        status, cycles = newton(problem, row, friction, halves, tolerance, work, memory, record)
     restore_limits(friction, places)
     if status != REPEATS:
         return False, cycles

@@ -52,6 +52,7 @@ from .places import (
 from .problem import Row, Work, make_row, make_work, set_row
 from .record import NOTHING, RANGES, STEPS, Record, clear_record, join_slips, make_record, mirror
 from .return_map import (
+    BITS,
     Return,
     base_halves,
     copy_motion,
@@ -362,22 +363,27 @@ def is_unique(friction):
 
 @kernel
 def _find_anew(problem, friction, halves, tolerance, tools):
-    """Find a steady state anew from its rounded state in `tools.memory.start`; the periods followed.
+    """Find a steady state anew from its rounded state; the periods followed.
 
     Parameters
     ----------
     problem, friction : Problem, Friction
     halves : half periods after which it returns
     tolerance : see `find`
-    tools : Tools
+    tools : Tools; the steady state is that in `tools.ring`, and in the end in `tools.memory.start`
     """
     row, work, memory, ring = tools.row, tools.work, tools.memory, tools.ring
-    if stop_contacts(problem, row, work, memory):
-        status, cycles = newton(problem, row, friction, halves, tolerance, work, memory, tools.record)
-        if status == REPEATS:
-            return cycles
+    spent = 0.0
+    for bits in BITS:
+        take_orbit(memory, ring)
+        round_state(problem, friction, memory, bits)
+        if stop_contacts(problem, row, work, memory):
+            status, cycles = newton(problem, row, friction, halves, tolerance, work, memory, tools.record)
+            spent += cycles
+            if status == REPEATS:
+                return spent
     take_orbit(memory, ring)
-    return 0.0
+    return spent
 
 
 @kernel
@@ -407,8 +413,14 @@ def _settle(problem, friction, state, found, cycles, tolerance, tools):
         go_back(memory, ring, 0)
         _, more = settle_places(problem, row, friction, halves, cycles, work, memory, record, places)
         return Steady(REPEATS, halves, found.cycles + more)
-    kept, spent = keep_orbit_anew(problem, row, friction, halves, tolerance, work, memory, record, places)
-    spent += found.cycles
+    kept, spent = False, found.cycles
+    for bits in BITS:
+        if not kept:
+            take_orbit(memory, ring)
+            kept, more = keep_orbit_anew(
+                problem, row, friction, halves, tolerance, bits, work, memory, record, places
+            )
+            spent += more
     if not kept:  # rounding takes away what hardly moves
         take_orbit(memory, ring)
         kept = keep_orbit(problem, row, friction, halves, work, memory, record, places)
@@ -468,8 +480,8 @@ def solve_from(problem, friction, state, cycles, tolerance, tools, what, settled
         if find_rests(memory, tools.places) > 0:
             found = _settle(problem, friction, state, found, cycles, tolerance, tools)
         elif unique:
-            round_state(memory)
             if by_tables:
+                round_state(problem, friction, memory, BITS[0])
                 solved, spent, multiplier = solve_single(
                     problem, row, tools.single, friction.kinetic[0], memory, record
                 )

@@ -186,12 +186,12 @@ def _check_misfit(outcome: Outcome[Tried]) -> None:
     Raises
     ------
     InputError
-        Residuals are far above the noise, and a large part of the motion.
+        What is left at the harmonics is far above the noise, and residuals are a large part of the motion.
     """
     fit = outcome.chosen.fit
     rms, noise = float(np.sqrt(np.mean(fit.residual**2))), outcome.chosen.noise
-    motion = float(np.std(fit.samples.x))
-    if outcome.chosen.explains or outcome.alike or rms <= max(MISFIT * noise, MISFIT_SHARE * motion):
+    far = fit.model_error > MISFIT and rms > MISFIT_SHARE * float(np.std(fit.samples.x))
+    if outcome.chosen.explains or outcome.alike or not far:
         return
     raise InputError(
         f"cannot fit x as a steady motion of one mass with friction: the residuals ({rms:.4g} rms) are far "

@@ -16,7 +16,7 @@ from .files.template import section_text
 from .identify.chain.estimates import chain_names
 from .identify.chain.two_masses import log_amplitude
 from .identify.decay.motion import Decay, displacement
-from .identify.parameters import CONTACT_STIFFNESS
+from .identify.parameters import ALIKE, CONTACT_STIFFNESS
 from .identify.rigs.keys import TABLES, rig_keys
 from .identify.signals.phasors import harmonics_at
 from .identify.time_series.motion import LAW, Shaken, motion
@@ -259,7 +259,7 @@ def _record(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
     order = np.argsort(phases, kind="stable")
     base = np.array(_HARMONICS)
     mass = Shaken("fixed-wall", "base", _SHAKEN_AT, base, (0.0, 0.0), phases[order], order, elastic)
-    values = np.array([truth[name] for name in mass.names])
+    values = np.array([{**ALIKE, **truth}[name] for name in mass.names])
     if elastic:
         values[LAW] = 1.0 / values[LAW]
     x = motion(mass, values).places

@@ -612,7 +612,7 @@ identify forced.toml --set system.masses=2
 identify forced.toml --set known.mu=0.9
     file forced.csv: known.mu must be >= 1; got 0.9
 identify forced.toml --set known.x_F=1
-    data.kind = 'forced': unknown key 'known.x_F'; valid: beta, f_n, zeta, mu, contact_stiffness, stiffness
+    data.kind = 'forced': unknown key 'known.x_F'; valid: beta, f_n, zeta, mu, contact_stiffness, delay, gain, stiffness
 identify forced.toml --set known.mu=1.2 --set known.contact_stiffness=3
     file forced.csv: mu must be 1 for a contact with a spring, which would jump at break-away; got 1.2
 identify forced.toml --set system.contact_stiffness=2 --set known.contact_stiffness=3
@@ -652,7 +652,7 @@ identify record.toml --set known.zeta=-0.1
 identify record.toml --set known.f_n=0
     file record.csv, columns time_s, base_mm and x_mm: known.f_n must be > 0; got 0.0
 identify record.toml --set known.beta=0.2
-    data.kind = 'record': unknown key 'known.beta' (did you mean zeta?); valid: f_n, zeta, x_F, mu, contact_stiffness, offset_x, stiffness
+    data.kind = 'record': unknown key 'known.beta' (did you mean zeta?); valid: f_n, zeta, x_F, mu, contact_stiffness, delay, gain, offset_x, stiffness
 identify record.toml --set 'data.columns={ z = "z_mm" }'
     unknown key 'data.columns.z'; valid: time, base, x
 identify record.toml --set 'data.window=[3, 4]'

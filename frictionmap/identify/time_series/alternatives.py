@@ -39,6 +39,11 @@ class Task(NamedTuple):
         )
 
 
+#: Change of the residuals, over that in other directions, that is no rounding error: the place at which a
+#: contact that never slips comes to rest is found by following it, with some 1e-8.
+SEEN = 1e-6
+
+
 class Tried(NamedTuple):
     """A model that was fitted, see `identify.explanations`."""
 
@@ -77,7 +82,7 @@ def _tried(name: str, task: Task, given: MeasuredRecord) -> Tried:
     used, fit = task.fitted(given)
     lines = _lines(used.phasors, fit)
     square, noise = lines.square(fit.solution.residual), float(np.sqrt(lines.variance))
-    determined = not undetermined(fit.problem, fit.solution)[0].size
+    determined = not undetermined(fit.problem, fit.solution, SEEN)[0].size
     found, explains = [], determined
     if determined and noise > _EXACT * float(np.std(used.channels[:, 1])):
         found = _steps(fit, lines)

@@ -18,7 +18,7 @@ from ..statistics.estimates import estimates, number, usable_errors, verdict
 from ..statistics.least_squares import Errors, undetermined
 from ..statistics.levels import MISFIT, MISFIT_SHARE
 from ..statistics.robust import LOSSES
-from .alternatives import Task, Tried, explained
+from .alternatives import SEEN, Task, Tried, explained
 from .data import measured_record
 from .errors import DERIVED
 from .estimates import estimated, tolerances, units, with_others
@@ -186,7 +186,7 @@ def _check_misfit(outcome: Outcome[Tried]) -> None:
     Raises
     ------
     InputError
-        What is left at the harmonics is far above the noise, and residuals are a large part of the motion.
+        Residuals at the harmonics are far above the noise, and a large part of the motion.
     """
     fit = outcome.chosen.fit
     rms, noise = float(np.sqrt(np.mean(fit.residual**2))), outcome.chosen.noise
@@ -202,7 +202,7 @@ def _check_misfit(outcome: Outcome[Tried]) -> None:
 
 def _check_identifiable(fit: RecordFit) -> None:
     """Refuse a motion that does not depend on some parameters, or not in ways of their own."""
-    indices, _ = undetermined(fit.problem, fit.solution)
+    indices, _ = undetermined(fit.problem, fit.solution, SEEN)
     found = {int(index) for index in indices if index < len(PARAMETERS)}
     if X_F in found and fit.free[OFFSET]:
         found.add(OFFSET)  # a contact that does not slip holds the mass at any place

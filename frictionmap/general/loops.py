@@ -24,7 +24,8 @@ def elementary_vectors(w: np.ndarray) -> np.ndarray:
     _, sizes, right = np.linalg.svd(w)
     rank = int((sizes > _ZERO * sizes[0]).sum())
     basis = right[:rank]
-    found: list[np.ndarray] = []
+    # vectors of least support with the same support are multiples: else a combination had a smaller one
+    found: dict[tuple[int, ...], np.ndarray] = {}
     for zeros in combinations(range(w.shape[1]), rank - 1):
         _, values, directions = np.linalg.svd(basis[:, zeros].T)
         if rank > 1 and values[-1] <= _ZERO:
@@ -32,9 +33,8 @@ def elementary_vectors(w: np.ndarray) -> np.ndarray:
         g = directions[-1] @ basis
         g = g / g[np.argmax(np.abs(g))]
         g[np.abs(g) <= _ZERO] = 0.0
-        if not any(np.allclose(g, other, atol=1e-8) or np.allclose(-g, other, atol=1e-8) for other in found):
-            found.append(g)
-    return np.array(found)
+        found.setdefault(tuple(np.flatnonzero(g).tolist()), g)
+    return np.array([*found.values()])
 
 
 def independent_contacts(w: np.ndarray) -> list[int]:

@@ -38,7 +38,8 @@ KEYS = (
     "waveform", "load_offset",
 )  # fmt: skip
 
-#: Rows of W that differ by less, relative to their size, are parallel.
+#: Rows of W are linearly dependent if a combination of them is smaller than this per mass: above rounding,
+#: and below any difference that is meant.
 _PARALLEL = 1e-12
 
 
@@ -302,15 +303,21 @@ def _describe_loop(groups: Sequence[Group]) -> str:
     if not rigid:
         return ""
     w = np.array([groups[k].vector for k in rigid])
-    if np.linalg.matrix_rank(w, tol=_PARALLEL * w.shape[1]) == len(rigid):
+    rank = _rank(w)
+    if rank == len(rigid):
         return ""
-    _, _, right = np.linalg.svd(w.T)
-    loop = [rigid[k] + 1 for k in np.flatnonzero(np.abs(right[-1]) > 1e-9)]
+    # a contact is in a loop if the others move all that it moves
+    loop = [rigid[k] + 1 for k in range(len(rigid)) if _rank(np.delete(w, k, axis=0)) == rank]
     names = ", ".join(map(str, loop))
     return (
         f"cannot use contacts {names} together: they close a loop, and their forces in a common stop are not "
         f"determined"
     )
+
+
+def _rank(w: np.ndarray) -> int:
+    """Number of linearly independent rows of W (contacts, n)."""
+    return int(np.linalg.matrix_rank(w, tol=_PARALLEL * w.shape[1])) if w.size else 0
 
 
 def _offset(given: object, n: int) -> np.ndarray:

@@ -327,6 +327,19 @@ def test_motions_of_a_loop_are_refused(call):
         call(fm.System(contacts=LOOP, **THREE))
 
 
+@pytest.mark.parametrize(
+    ("further", "named"),
+    [([(4, 5)], "1, 2, 3"), ([(4, 5), (5, 6), (4, 6)], "1, 2, 3, 4, 5, 6")],
+    ids=["a loop and a contact", "two loops"],
+)
+def test_all_contacts_of_loops_are_named_and_no_others(further, named):
+    pairs = [(1, 2), (2, 3), (1, 3), *further]
+    contacts = [fm.Contact("between-masses", pair) for pair in pairs]
+    system = fm.System(contacts=contacts, mass_ratios=[1] * 6, stiffness_ratios=[1] * 6)
+    with pytest.raises(fm.InputError, match=f"cannot use contacts {named} together: they close a loop"):
+        fm.sweep(system, [0.5], [0.1])
+
+
 def test_boundaries_of_a_loop_with_even_harmonics_are_refused():
     with pytest.raises(fm.InputError, match=r"close a loop, .* beta_stick of a loop is found for rigid"):
         fm.boundaries(fm.System(contacts=LOOP, load_harmonics={1: 1.0, 2: 0.2}, **THREE), [0.5])

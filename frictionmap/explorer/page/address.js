@@ -1,4 +1,4 @@
-// The view in the address, so that a link brings it back; and as the server is asked for it.
+// The view in the address, so that a link restores it, and in requests to the server.
 
 /**
  * What the page shows.

@@ -16,25 +16,25 @@ export class Costs {
   /** @type {Map<string, {cells: number, milliseconds: number}>} the last picture of a kind */
   #seen = new Map();
 
-  /** Milliseconds that a picture of so many cells will take. @param {{view: object, scene: object}} asked */
-  of(asked, cells) {
-    const { cells: known, milliseconds } = this.#seen.get(kindOf(asked)) ?? guessed(asked);
+  /** Estimated milliseconds of a picture with this number of cells. @param {{view: object, scene: object}} request */
+  of(request, cells) {
+    const { cells: known, milliseconds } = this.#seen.get(kindOf(request)) ?? guessed(request);
     return milliseconds * (cells / known) ** POWER;
   }
 
   /**
-   * A picture is begun: `column` foresees the milliseconds of its next columns, which are like the last ones;
+   * Start a picture: `column` estimates the milliseconds of its next columns from the last ones;
    * `add` records the time that columns took.  Left and right may differ much, so all columns seen so far count.
    */
-  begin(asked, columns, rows) {
+  begin(request, columns, rows) {
     const taken = { columns: 0, milliseconds: 0 };
-    const cost = { column: this.of(asked, columns * rows) / columns };
+    const cost = { column: this.of(request, columns * rows) / columns };
     cost.add = (count, milliseconds) => {
       cost.column = milliseconds / count;
       taken.columns += count;
       taken.milliseconds += milliseconds;
       const whole = (taken.milliseconds * columns) / taken.columns;
-      this.#seen.set(kindOf(asked), { cells: columns * rows, milliseconds: whole });
+      this.#seen.set(kindOf(request), { cells: columns * rows, milliseconds: whole });
     };
     return cost;
   }

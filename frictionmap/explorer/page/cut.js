@@ -44,9 +44,9 @@ export class CutPanel {
   }
 
   /** @param {object} curves  as the server sends them, in the units of their system  @param {{left: number, right: number}} room  of the map
-   *  @param {string} asked  key of the curve: the system and its position */
-  show(curves, room, asked) {
-    [this.curves, this.room, this.asked] = [curves, room, asked];
+   *  @param {string} key  key of the curve: the system and its position */
+  show(curves, room, key) {
+    [this.curves, this.room, this.key] = [curves, room, key];
     this.panel.hidden = false;
     this.draw();
   }

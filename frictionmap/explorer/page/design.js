@@ -1,7 +1,7 @@
 // Goals of a design, and pinned designs: what they add to the page, and to its address.
 
 import { hashOf, systemKey } from "./address.js";
-import { VALID, askedOf, goalOf, isComplete, noGoal, textOf } from "./goal.js";
+import { VALID, queryOfGoal, goalOf, isComplete, noGoal, textOf } from "./goal.js";
 import { Handles } from "./handles.js";
 import { GoalPanel } from "./panel.js";
 import { NAMES, Pins } from "./pins.js";
@@ -28,7 +28,7 @@ export class Design {
     this.answer = null;
     this.key = ""; // of the goal and the system whose answer is shown or awaited
     this.wrong = [];
-    this.requests = does.newest((...asked) => this.#fetch(...asked), () => {});
+    this.requests = does.newest((...args) => this.#fetch(...args), () => {});
     this.given = new URLSearchParams();
   }
 
@@ -131,7 +131,7 @@ export class Design {
   async #fetch(signal, key, view, goal) {
     this.#lookAtWaiting(key);
     try {
-      const answer = await this.source.goal(view, this.scene, askedOf(goal), signal);
+      const answer = await this.source.goal(view, this.scene, queryOfGoal(goal), signal);
       if (key === this.key) this.#show(answer);
     } catch (error) {
       if (error.name === "AbortError") throw error;

@@ -38,11 +38,11 @@ export function isComplete({ ask, limit }) {
 }
 
 /** A goal as keys of a query. */
-export function askedOf({ ask, band, of, limit }) {
-  const asked = { goal: ask, band: band.join(",") };
-  if (OF_RESPONSE.includes(ask)) asked.of = of;
-  if (ask === "at-most") asked.limit = limit;
-  return asked;
+export function queryOfGoal({ ask, band, of, limit }) {
+  const query = { goal: ask, band: band.join(",") };
+  if (OF_RESPONSE.includes(ask)) query.of = of;
+  if (ask === "at-most") query.limit = limit;
+  return query;
 }
 
 /** A goal as it stands in an address; "" if there is none. */
@@ -146,7 +146,7 @@ const SENTENCES = {
     : [`No friction holds over the whole band: stuck, the structure resonates without damping at ${place(answer.r, answer)}.`],
 };
 
-/** The answer to a goal in sentences. @param {object} answer  as the server sends it  @param {string} label  of its subject */
+/** Describe the result for a goal in sentences. @param {object} answer  as the server sends it  @param {string} label  of its subject */
 export function sentencesOf(answer, label) {
   return SENTENCES[answer.goal](answer, label);
 }

@@ -37,25 +37,25 @@ const STILL = 180;
  * Work of which only the latest request counts: one runs at a time, and the last request made meanwhile waits.
  * A running request may continue for some milliseconds, so that motions follow the pointer.
  */
-class Newest {
+class LatestOnly {
   #control = null;
   #waiting = null;
 
-  /** @param {(signal: AbortSignal, ...asked) => Promise<void>} work */
+  /** @param {(signal: AbortSignal, ...args) => Promise<void>} work */
   constructor(work, onError, grace = 0) {
     [this.work, this.onError, this.grace] = [work, onError, grace];
   }
 
-  async ask(...asked) {
+  async ask(...args) {
     if (this.#control) {
-      this.#waiting = asked;
-      this.#outdate(this.#control);
+      this.#waiting = args;
+      this.#supersede(this.#control);
       return;
     }
     const control = (this.#control = new AbortController());
     control.began = performance.now();
     try {
-      await this.work(control.signal, ...asked);
+      await this.work(control.signal, ...args);
     } catch (error) {
       if (error.name !== "AbortError") this.onError(error);
     }
@@ -71,7 +71,7 @@ class Newest {
     this.#control?.abort();
   }
 
-  #outdate(control) {
+  #supersede(control) {
     const left = control.began + this.grace - performance.now();
     if (left > 0) setTimeout(() => control.abort(), left);
     else control.abort();
@@ -81,9 +81,9 @@ class Newest {
 /** Delay work until it has not been requested for a while. */
 function later(work, milliseconds) {
   let timer = 0;
-  return (...asked) => {
+  return (...args) => {
     clearTimeout(timer);
-    timer = setTimeout(() => work(...asked), milliseconds);
+    timer = setTimeout(() => work(...args), milliseconds);
   };
 }
 
@@ -91,7 +91,7 @@ class Page {
   constructor(source, scene) {
     [this.source, this.scene] = [source, scene];
     this.design = new Design(source, scene, {
-      settle: () => this.settle(), select: (cell) => this.change({ cell }), newest: (work, onError) => new Newest(work, onError),
+      settle: () => this.settle(), select: (cell) => this.change({ cell }), newest: (work, onError) => new LatestOnly(work, onError),
     });
     this.quantities = scene.quantities;
     this.step = this.last = history.state?.step ?? 0;
@@ -109,12 +109,12 @@ class Page {
     });
     this.refiner = new Refiner(source, (found) => this.#onPicture(found), (state) => this.#onState(state));
     this.controls = new Controls(part("controls"), scene, (change) => this.#onControl(change), source.fixed);
-    this.motions = new Newest((...asked) => this.#fetchMotion(...asked), (error) => this.#wrong(error), GRACE);
-    this.examples = new Newest((signal) => this.#fetchExample(signal), () => {});
-    this.others = new Newest((...asked) => this.#fetchOthers(...asked), () => {});
-    this.cuts = new Newest((signal) => this.#fetchCut(signal), (error) => this.#wrong(error));
+    this.motions = new LatestOnly((...args) => this.#fetchMotion(...args), (error) => this.#wrong(error), GRACE);
+    this.examples = new LatestOnly((signal) => this.#fetchExample(signal), () => {});
+    this.others = new LatestOnly((...args) => this.#fetchOthers(...args), () => {});
+    this.cuts = new LatestOnly((signal) => this.#fetchCut(signal), (error) => this.#wrong(error));
     this.settle = later(() => this.#settled(), STILL);
-    this.rest = later((...asked) => this.others.ask(...asked), STILL);
+    this.rest = later((...args) => this.others.ask(...args), STILL);
     this.pending = new Map();
     this.message = part("message");
     for (const button of document.querySelectorAll("[data-save]")) {
@@ -187,7 +187,7 @@ class Page {
     const { columns, rows } = (this.size = map.size);
     const kind = this.quantities.find((quantity) => quantity.key === view.quantity).scale;
     this.map.stage.dataset.state = "refining";
-    this.asked = performance.now();
+    this.requestedAt = performance.now();
     this.refiner.ask({ view, scene, columns, rows, table: this.table, kind, scale: null });
     map.pointed = this.pointed;
     const cell = view.cell ?? this.pointed;
@@ -209,8 +209,8 @@ class Page {
     fade("cells", whole !== null && cellsKey(whole.view) !== cellsKey(view));
     const words = whole !== null && pictureKey(whole.view) !== pictureKey(view);
     for (const name of ["system", "legend"]) fade(name, words);
-    fade("motion", motion.motion !== null && motion.asked !== this.#motionKey(view, view.cell ?? this.pointed));
-    fade("cut", cut.curves !== null && cut.asked !== this.#cutKey(view));
+    fade("motion", motion.motion !== null && motion.key !== this.#motionKey(view, view.cell ?? this.pointed));
+    fade("cut", cut.curves !== null && cut.key !== this.#cutKey(view));
   }
 
   /** Keys of the motion shown, and of the response curve. */
@@ -227,7 +227,7 @@ class Page {
     else this.map.draw();
   }
 
-  /** Whether the map has another size than it was asked for. */
+  /** Whether the size of the map differs from that requested. */
   get #resized() {
     const { columns, rows } = this.map.size;
     return columns !== this.size?.columns || rows !== this.size?.rows;
@@ -273,10 +273,10 @@ class Page {
     this.#remember(hashOf(this.view, this.scene) + this.design.hash);
     this.hash = location.hash;
     if (!this.source.live) return;
-    const asked = queryOf(this.view, this.scene);
+    const query = queryOf(this.view, this.scene);
     try {
-      const { quantities } = await this.source.scene(asked);
-      if (asked === queryOf(this.view, this.scene)) this.#offer(quantities); // else another answer is to come
+      const { quantities } = await this.source.scene(query);
+      if (query === queryOf(this.view, this.scene)) this.#offer(quantities); // else another answer is to come
     } catch {
       // the map shows the error of the view
     }
@@ -335,8 +335,8 @@ class Page {
     const chosen = (this.source.live && new URLSearchParams(location.hash.slice(1)).get("contact")) || scene.contacts[0].key;
     this.quantities = scene.contacts.find(({ key }) => key === chosen)?.quantities ?? this.quantities;
     const known = { ...scene, quantities: this.quantities };
-    const { view: asked, wrong } = viewOf(this.design.read(location.hash), known, this.source.fixed?.values);
-    const { view, note } = this.#inFile(asked);
+    const { view: wanted, wrong } = viewOf(this.design.read(location.hash), known, this.source.fixed?.values);
+    const { view, note } = this.#inFile(wanted);
     this.view = view;
     this.#note([...wrong, ...this.design.wrong, note].filter(Boolean).join("\n"));
   }
@@ -390,7 +390,7 @@ class Page {
   /** Compute finer maps on request. */
   #finer() {
     this.map.stage.dataset.state = "refining";
-    this.asked = performance.now();
+    this.requestedAt = performance.now();
     this.#say("computing");
     this.refiner.more();
   }
@@ -441,7 +441,7 @@ class Page {
         this.#say(`First use: compiling, ${wait}. This happens once per machine.`);
       } else if (this.compiled) {
         this.#compiled();
-      } else if (this.message.hidden && performance.now() - this.asked > SLOW) {
+      } else if (this.message.hidden && performance.now() - this.requestedAt > SLOW) {
         this.#say("computing");
       }
     } catch {

@@ -82,11 +82,11 @@ export class MotionPanel {
    * @param {object} motion  as the server sends it, in the units of its system
    * @param {{colour: string}} look  of the cell's class
    * @param {string} kind    "selected", "example" or "" of a cell that is pointed at
-   * @param {string} asked   key of the motion: the system and the cell
+   * @param {string} key   key of the motion: the system and the cell
    */
-  show(motion, look, kind, asked) {
+  show(motion, look, kind, key) {
     if (!this.#part("h2")) this.#layOut();
-    [this.motion, this.other, this.asked] = [motion, null, asked];
+    [this.motion, this.other, this.key] = [motion, null, key];
     const none = "none" in motion;
     this.#part("h2 i").style.background = look.colour;
     this.#part(".regime").textContent = none ? REGIMES.unresolved : REGIMES[motion.regime] ?? motion.regime;

@@ -3,7 +3,7 @@
 import { viewOf } from "./address.js";
 import { short } from "./axes.js";
 import { make } from "./dom.js";
-import { askedOf, goalOf, inUnits, isComplete, shortly, wordsOf } from "./goal.js";
+import { queryOfGoal, goalOf, inUnits, isComplete, shortly, wordsOf } from "./goal.js";
 import { Server } from "./source.js";
 
 export const NAMES = ["A", "B"];
@@ -11,7 +11,7 @@ export const NAMES = ["A", "B"];
 /** The key of a pinned design in an address. */
 const keyOf = (name) => `design${name}`;
 
-/** A pinned design: what its address says, and its numbers as they come in. */
+/** A pinned design: what its address says, and its numbers once they have arrived. */
 class Pin {
   /** @param {string} text  address of a view with its goal, without #  @param {object} scene */
   constructor(text, scene) {
@@ -31,7 +31,7 @@ class Pin {
     const { view, goal } = this;
     try {
       if (view.cell) this.motion = await source.motion(view, scene, view.cell);
-      if (goal && isComplete(goal)) this.answer ??= await source.goal(view, scene, askedOf(goal));
+      if (goal && isComplete(goal)) this.answer ??= await source.goal(view, scene, queryOfGoal(goal));
     } catch (error) {
       this.wrong = error.message;
     }

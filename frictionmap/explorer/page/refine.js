@@ -32,11 +32,11 @@ export class Refiner {
 
   /**
    * Request pictures of a view; earlier requests are cancelled.
-   * @param {object} asked  {view, scene, columns, rows, table, kind, scale}; boundaries as fine as the screen, once
+   * @param {object} request  {view, scene, columns, rows, table, kind, scale}; boundaries as fine as the screen, once
    *   they are there, are its `lines`
    */
-  ask(asked) {
-    this.#waiting = asked;
+  ask(request) {
+    this.#waiting = request;
     const running = this.#running;
     if (!running) {
       this.#next();
@@ -51,14 +51,14 @@ export class Refiner {
   }
 
   async #next() {
-    const asked = this.#waiting;
+    const request = this.#waiting;
     this.#waiting = null;
-    if (!asked) return;
+    if (!request) return;
     const run = { control: new AbortController(), began: performance.now(), seen: false };
     this.#running = run;
-    this.#last = asked;
+    this.#last = request;
     try {
-      await this.#refine(asked, run);
+      await this.#refine(request, run);
     } catch (error) {
       if (error.name !== "AbortError") this.onState({ error });
     }
@@ -72,11 +72,11 @@ export class Refiner {
   }
 
   /** Pixels of a cell in the pictures to come. */
-  #blocks(asked) {
+  #blocks(request) {
     if (this.source.fixed) return [1];
-    const cells = asked.columns * asked.rows;
+    const cells = request.columns * request.rows;
     let block = 1;
-    while (this.#costs.of(asked, cells / block ** 2) > 1.5 * FIRST && block < COARSEST) block *= 2;
+    while (this.#costs.of(request, cells / block ** 2) > 1.5 * FIRST && block < COARSEST) block *= 2;
     const blocks = [block];
     while (block > 1) {
       block = block > 4 ? block / 4 : 1;
@@ -86,52 +86,52 @@ export class Refiner {
   }
 
   /** Show the boundaries alone: the first map of a page may wait for compilation. */
-  async #drawLines(asked, signal) {
-    const packet = await this.source.lines(asked.view, asked.scene, asked.columns, signal);
-    const picture = new Picture(asked.view, asked.view, 1, 1, asked.table, asked.kind);
+  async #drawLines(request, signal) {
+    const packet = await this.source.lines(request.view, request.scene, request.columns, signal);
+    const picture = new Picture(request.view, request.view, 1, 1, request.table, request.kind);
     picture.about = packet.about;
-    picture.lines = asked.lines = finerLines(packet);
+    picture.lines = request.lines = finerLines(packet);
     this.#begun = true;
     this.onPicture(picture);
   }
 
-  async #refine(asked, run) {
-    if (this.source.live && !this.#begun) await this.#drawLines(asked, run.control.signal);
-    const blocks = this.#blocks(asked);
+  async #refine(request, run) {
+    if (this.source.live && !this.#begun) await this.#drawLines(request, run.control.signal);
+    const blocks = this.#blocks(request);
     for (const [level, block] of blocks.entries()) {
       const size = this.source.fixed ?? {
-        columns: Math.ceil(asked.columns / block),
-        rows: Math.ceil(asked.rows / block),
+        columns: Math.ceil(request.columns / block),
+        rows: Math.ceil(request.rows / block),
       };
-      const expected = this.#costs.of(asked, size.columns * size.rows);
-      if (level && expected > LONGEST && !asked.patient) {
+      const expected = this.#costs.of(request, size.columns * size.rows);
+      if (level && expected > LONGEST && !request.patient) {
         this.onState({ held: expected });
         return;
       }
-      await this.#fill(asked, run, size, level === 0);
+      await this.#fill(request, run, size, level === 0);
       if (this.#waiting) return;
     }
     this.onState({ done: performance.now() - run.began });
   }
 
   /** One picture, in pieces. */
-  async #fill(asked, run, { columns, rows }, first) {
-    const ranges = this.source.fixed ?? asked.view;
-    const picture = new Picture(asked.view, ranges, columns, rows, asked.table, asked.kind, asked.scale);
+  async #fill(request, run, { columns, rows }, first) {
+    const ranges = this.source.fixed ?? request.view;
+    const picture = new Picture(request.view, ranges, columns, rows, request.table, request.kind, request.scale);
     const began = performance.now();
-    const cost = this.#costs.begin(asked, columns, rows);
+    const cost = this.#costs.begin(request, columns, rows);
     while (!picture.whole) {
       const at = picture.filled;
       const width = Math.max(1, Math.floor((first ? 2 * PIECE : PIECE) / cost.column));
       const last = Math.min(columns, columns - at - width < width / 2 ? columns : at + width);
       const piece = { columns, rows, first: at, last };
-      if (columns < asked.columns && !asked.lines) piece.lines = asked.columns;
-      const packet = await this.source.map(asked.view, asked.scene, piece, run.control.signal);
-      if (piece.lines && this.source.live) asked.lines = finerLines(packet);
-      picture.lines = asked.lines;
+      if (columns < request.columns && !request.lines) piece.lines = request.columns;
+      const packet = await this.source.map(request.view, request.scene, piece, run.control.signal);
+      if (piece.lines && this.source.live) request.lines = finerLines(packet);
+      picture.lines = request.lines;
       picture.put(packet, at);
       if (packet.seconds && !packet.compiled) cost.add(last - at, 1000 * packet.seconds);
-      asked.scale = picture.scale;
+      request.scale = picture.scale;
       run.seen = true;
       this.onPicture(picture);
       this.onState({ share: picture.filled / columns, since: began });

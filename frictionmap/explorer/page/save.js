@@ -19,7 +19,7 @@ export async function copy(text) {
   try {
     await navigator.clipboard.writeText(text);
   } catch {
-    const area = document.createElement("textarea"); // where the clipboard is not to be had
+    const area = document.createElement("textarea"); // where the clipboard is not available
     area.value = text;
     document.body.append(area);
     area.select();

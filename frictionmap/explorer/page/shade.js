@@ -1,4 +1,4 @@
-// The answer to a goal over the map: its band of frequencies, the friction that meets it, the optimum.
+// The result for a goal, drawn over the map: its band of frequencies, the friction that meets it, the optimum.
 
 import { keepTo, short } from "./axes.js";
 

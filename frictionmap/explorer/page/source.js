@@ -68,7 +68,7 @@ export class Server {
     return (await this.#get("example", query, signal)).json();
   }
 
-  /** The boundaries of a view at so many frequencies. */
+  /** The boundaries of a view at a given number of frequencies. */
   lines(view, scene, count, signal) {
     return this.#packet("lines", view, scene, { count }, signal);
   }
@@ -83,9 +83,9 @@ export class Server {
     return this.#packet("cut", view, scene, { along, place, count }, signal);
   }
 
-  /** The answer to a goal of a design. @param {object} asked  keys of the query */
-  async goal(view, scene, asked, signal) {
-    const query = queryOf(view, scene, { ...asked, page: this.#page, turn: (this.#turn += 1) });
+  /** The result for a goal of a design. @param {object} goal  keys of the query */
+  async goal(view, scene, goal, signal) {
+    const query = queryOf(view, scene, { ...goal, page: this.#page, turn: (this.#turn += 1) });
     return (await this.#get("goal", query, signal)).json();
   }
 

@@ -10,7 +10,7 @@ from frictionmap.command_line.arguments import Command, described
 from frictionmap.datasets.design_labels import DESIGN
 from frictionmap.datasets.labels import LABELS, Label
 from frictionmap.datasets.provenance import value_text
-from frictionmap.files.keys import KEYS, TABLES, Key, in_words
+from frictionmap.files.keys import KEYS, TABLES, Key, describe_values
 from frictionmap.identify.rigs.configuration import KINDS
 from frictionmap.identify.rigs.keys import TABLES as RIG_TABLES
 from frictionmap.identify.rigs.keys import rig_keys
@@ -104,7 +104,7 @@ def _keys(section: str, keys: Iterable[Key], what: str, level: str = "###") -> I
         (
             f"`{key.name}`",
             key.meaning,
-            in_words(key),
+            describe_values(key),
             "" if key.default is None else f"`{value_text(key.default)}`",
         )
         for key in keys

@@ -48,13 +48,13 @@ def _completer(action: Action, own: Mapping, common: Mapping) -> dict | None:
     """Return what shtab needs to complete an argument: words or files; None: its choices, or nothing."""
     for flag in action.option_strings:
         if found := own.get(flag) or common.get(flag):
-            return _of_words(found)
+            return _word_completer(found)
     metavar = str(action.metavar or "")
     suffixes = _FILES.get(metavar) or re.findall(r"\.([a-z]+)", metavar)
     return shtab.glob(*(f"*.{suffix}" for suffix in suffixes)) if suffixes else None
 
 
-def _of_words(words: Sequence[str]) -> dict:
+def _word_completer(words: Sequence[str]) -> dict:
     """Return shtab's completer for fixed words; the shell adds no space behind one that ends in "="."""
     name = f"_frictionmap_words_{shtab.sha(words)}"
     listed = shlex.join(words)

@@ -86,7 +86,7 @@ COORDINATES = {
 _PER_CYCLE = "per excitation cycle, over P^2/k1"
 
 
-def _of_cell(long_name: str, comment: str = "", *further: str, least: float = -np.inf) -> Label:
+def _cell_label(long_name: str, comment: str = "", *further: str, least: float = -np.inf) -> Label:
     """Label of a number, or several, for every cell; infinite at an undamped resonance."""
     return Label(
         np.float64,
@@ -100,7 +100,7 @@ def _of_cell(long_name: str, comment: str = "", *further: str, least: float = -n
     )
 
 
-def _phase(long_name: str, comment: str, *further: str, most: float = np.pi) -> Label:
+def _phase_label(long_name: str, comment: str, *further: str, most: float = np.pi) -> Label:
     """Label of a phase, or several, for every cell."""
     return Label(
         np.float64, long_name, (*CELL, *further), comment=comment, least=-np.pi, most=most, nan=True,
@@ -244,28 +244,28 @@ CELL_VARIABLES = {
         inf=True,
         needs="details",
     ),
-    "sliding_distance": _of_cell(
+    "sliding_distance": _cell_label(
         "distance that the contact slides", "per excitation cycle, over P/k1 (Y); 0 where stuck", least=0.0
     ),
-    "work_friction": _of_cell("work dissipated by friction", _PER_CYCLE, least=0.0),
-    "work_input": _of_cell(
+    "work_friction": _cell_label("work dissipated by friction", _PER_CYCLE, least=0.0),
+    "work_input": _cell_label(
         "work of the load, or of what moves the base", f"{_PER_CYCLE}; a joined wall is moved with the base"
     ),
-    "work_damping": _of_cell("work dissipated by viscous damping", _PER_CYCLE, least=0.0),
-    "equivalent_damping": _of_cell(
+    "work_damping": _cell_label("work dissipated by viscous damping", _PER_CYCLE, least=0.0),
+    "equivalent_damping": _cell_label(
         "equivalent viscous damping of the contact, c omega/k1",
         "work of friction over pi times the contact amplitude squared; NaN where stuck",
     ),
-    "contact_first_harmonic_amplitude": _of_cell(
+    "contact_first_harmonic_amplitude": _cell_label(
         "amplitude of the first harmonic of the motion in the contact, over P/k1 (Y)", least=0.0
     ),
-    "contact_first_harmonic_phase": _phase(
+    "contact_first_harmonic_phase": _phase_label(
         "lag of the first harmonic of the motion in the contact behind the load", "NaN where stuck"
     ),
 }
 
 
-def _range_of(long_name: str, *further: str, comment: str = "", least: float = -np.inf) -> Label:
+def _range_label(long_name: str, *further: str, comment: str = "", least: float = -np.inf) -> Label:
     """Label of a length for every cell, and for every contact or mass of a general system."""
     return Label(np.float64, long_name, (*CELL, *further), comment=comment, least=least, nan=True, inf=True)
 
@@ -329,22 +329,22 @@ GENERAL_VARIABLES = {
         least=0.0,
         nan=True,
     ),
-    "equivalent_stiffness": _range_of(
+    "equivalent_stiffness": _range_label(
         "equivalent stiffness of the contact over k1",
         comment="real part of the first harmonic of the friction force over that of the motion",
     ),
-    "contact_peak_to_peak": _range_of("range of the motion in the contact, over P/k1 (Y)", least=0.0),
-    "contact_midpoint": _range_of(
+    "contact_peak_to_peak": _range_label("range of the motion in the contact, over P/k1 (Y)", least=0.0),
+    "contact_midpoint": _range_label(
         "middle of the range of the motion in the contact, over P/k1 (Y)",
-        comment="depends on the start where the contact rests for good",
+        comment="depends on the initial state where the contact stays stuck",
     ),
-    "peak_to_peak": _range_of("range of the displacement of each mass, over P/k1 (Y)", "dof", least=0.0),
-    "midpoint": _range_of("middle of the range of the displacement of each mass, over P/k1 (Y)", "dof"),
-    "work_wall": _range_of("work of the moving wall", comment=_PER_CYCLE),
+    "peak_to_peak": _range_label("range of the displacement of each mass, over P/k1 (Y)", "dof", least=0.0),
+    "midpoint": _range_label("middle of the range of the displacement of each mass, over P/k1 (Y)", "dof"),
+    "work_wall": _range_label("work of the moving wall", comment=_PER_CYCLE),
     "release_order": Label(
         np.int8,
-        "whether the pattern after some event of the steady state depends on the order in which contacts let "
-        "go",
+        "whether the pattern after some event of the steady state depends on the order in which contacts "
+        "are released",
         CELL,
         _RELEASE_ORDERS,
         unresolved=regimes.UNRESOLVED,
@@ -384,69 +384,71 @@ _PLATEAU = "the load's phase, counted from its maximum; NaN where the maximum is
 
 #: Variables of every cell of response curves, in addition to outputs of a map.
 CYCLE_VARIABLES = {
-    "phase_lag": _phase(
+    "phase_lag": _phase_label(
         "lag of the maximum of the displacement of each mass behind that of the load",
         "where the largest modulus is at a minimum, half a period later; NaN where it is held over a stop "
         "(phase_begin, phase_end) and where the period is not 1",
         "dof",
     ),
-    "phase_begin": _phase("begin of the stop that holds a mass at its maximum", _PLATEAU, "dof"),
-    "phase_end": _phase("end of the stop that holds a mass at its maximum", _PLATEAU, "dof", most=np.inf),
-    "contact_phase": _phase(
+    "phase_begin": _phase_label("start of the stop that holds a mass at its maximum", _PLATEAU, "dof"),
+    "phase_end": _phase_label(
+        "end of the stop that holds a mass at its maximum", _PLATEAU, "dof", most=np.inf
+    ),
+    "contact_phase": _phase_label(
         "lag of the maximum of the motion in the contact behind that of the load",
         "as `phase_lag`; NaN where it is held over a stop (contact_phase_begin, contact_phase_end)",
     ),
-    "contact_phase_begin": _phase("begin of the stop that holds the contact at its maximum", _PLATEAU),
-    "contact_phase_end": _phase(
+    "contact_phase_begin": _phase_label("start of the stop that holds the contact at its maximum", _PLATEAU),
+    "contact_phase_end": _phase_label(
         "end of the stop that holds the contact at its maximum", _PLATEAU, most=np.inf
     ),
-    "first_harmonic_amplitude": _of_cell(
+    "first_harmonic_amplitude": _cell_label(
         "amplitude of the first harmonic of the displacement of each mass, over P/k1 (Y)",
         "frequency-based transmissibility, thesis (4.4)",
         "dof",
         least=0.0,
     ),
-    "first_harmonic_phase": _phase(
+    "first_harmonic_phase": _phase_label(
         "lag of the first harmonic of the displacement of each mass behind the load",
         "thesis (4.5), counted positive; NaN where there is no motion",
         "dof",
     ),
-    "displacement_harmonic": _of_cell(
+    "displacement_harmonic": _cell_label(
         "harmonics X of the displacement of each mass, over P/k1 (Y)",
         "x = X_0 + Re sum X_n exp(i n tau); subharmonics are left out",
         "dof",
         "harmonic",
         "part",
     ),
-    "contact_harmonic": _of_cell(
+    "contact_harmonic": _cell_label(
         "harmonics of the motion in the contact, over P/k1 (Y)",
         "as displacement_harmonic",
         "harmonic",
         "part",
     ),
-    "friction_harmonic": _of_cell(
+    "friction_harmonic": _cell_label(
         "harmonics of the friction force against the motion in the contact, over P",
         "as displacement_harmonic",
         "harmonic",
         "part",
     ),
-    "transmitted_force": _of_cell(
+    "transmitted_force": _cell_label(
         "largest modulus of the force transmitted to the ground, over P",
         "sum of the loads less the inertia",
         least=0.0,
     ),
-    "transmitted_first_harmonic": _of_cell(
+    "transmitted_first_harmonic": _cell_label(
         "amplitude of the first harmonic of the force transmitted to the ground, over P",
         "sum of the loads less the inertia",
         least=0.0,
     ),
-    "rms": _of_cell(
+    "rms": _cell_label(
         "root mean square of the displacement of each mass, over P/k1 (Y)",
         "over the steady period, its mean included",
         "dof",
         least=0.0,
     ),
-    "distortion": _of_cell(
+    "distortion": _cell_label(
         "distortion of the displacement of each mass",
         "root mean square of all but the mean and the first harmonic, over that of the first harmonic",
         "dof",
@@ -475,7 +477,7 @@ CURVES = {
     "beta_stick": Label(np.float64, "boundary to permanent sticking", CURVE, least=0.0, inf=True),
     "beta_stick_contact": Label(
         np.float64,
-        "friction ratio from which each contact rests for good",
+        "friction ratio at or above which each contact can stay stuck",
         CURVE,
         comment="half the range of its force with all contacts held, over its static friction per beta",
         least=0.0,
@@ -492,11 +494,11 @@ CURVES = {
         np.int8, "what ends the motion without stops at beta_lim", CURVE, codes=regimes.LIMIT_KINDS
     ),
     "beta_noslip": Label(
-        np.float64, "friction ratio from which no elastic contact slips", ("r",), least=0.0, inf=True
+        np.float64, "friction ratio at or above which no elastic contact slips", ("r",), least=0.0, inf=True
     ),
     "no_stop_begin": Label(
         np.float64,
-        "begin of each interval of the friction ratio without stops",
+        "start of each interval of the friction ratio without stops",
         (*CURVE, "interval"),
         comment="padded with NaN",
         least=0.0,
@@ -513,7 +515,7 @@ CURVES = {
     ),
     "wall_velocity_lim": Label(
         np.float64,
-        "wall velocity from which the contact slides one way, over omega P/k1",
+        "wall velocity at or above which the contact slides one way, over omega P/k1",
         ("r",),
         least=0.0,
         inf=True,
@@ -539,7 +541,7 @@ CURVES = {
         np.float64,
         "least friction ratio for a finite resonant peak",
         ("mode",),
-        comment="thesis (6.2), (6.26); with damping (7.62), approximate; NaN of one that C couples to others",
+        comment="thesis (6.2), (6.26); with damping (7.62), approximate; NaN for modes that C couples",
         nan=True,
         least=0.0,
         inf=True,
@@ -782,7 +784,7 @@ def in_si(name: str, measure: str) -> str:
     return f"{name}_{SI[measure][1]}"
 
 
-def _in_si(label: Label, measure: str) -> Label:
+def _si_label(label: Label, measure: str) -> Label:
     """Label of a variable in its SI unit."""
     name = re.sub(r", (over P.*|dx/dtau.*|in units of r)$", "", label.long_name)
     name = name.replace("frequency ratios", "frequencies").replace("excitation phase at", "time at")
@@ -796,7 +798,7 @@ _RATIOS = {
     **SHARES,
 }  # fmt: skip
 IN_SI = {
-    in_si(name, measure): _in_si(_RATIOS[name], measure)
+    in_si(name, measure): _si_label(_RATIOS[name], measure)
     for measure, names in MEASURES.items()
     for name in names
 }

@@ -57,7 +57,7 @@ def answer(
     scales : Scales
     study : axes of the samples, as `sweep` takes them
     """
-    found = {"question": question, **values, **_in_units(question, values, asked, scales)}
+    found = {"question": question, **values, **_answer_in_units(question, values, asked, scales)}
     variables = {name: _variable(name, value) for name, value in found.items()}
     coords = {name: variables.pop(name) for name in DESIGN_AXES if name in variables}
     r = np.array([band.low, band.high])
@@ -73,10 +73,10 @@ def answer(
 
 def _response_in_words(asked: Mapping[str, Any]) -> str:
     """What the question is about; empty for one about boundaries."""
-    return Response(**asked["response"]).words() if "response" in asked else ""
+    return Response(**asked["response"]).describe() if "response" in asked else ""
 
 
-def _in_units(
+def _answer_in_units(
     question: str, values: Mapping[str, Any], asked: Mapping[str, Any], scales: Scales
 ) -> dict[str, Any]:
     """The answer in newtons, its peaks in hertz and metres, as far as the reference values are known."""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..errors import InputError, NoSteadyState
-from .least_peak import Optimum, find_optimum, in_words, largest
+from .least_peak import Optimum, describe_cells, find_optimum, largest
 from .minimum import Points, changes, crossing
 from .performance import PerformanceCurve
 from .task import Task
@@ -49,8 +49,8 @@ def _refuse_unknown(curve: PerformanceCurve, limit: float) -> None:
     for beta, cells in curve.unknown.items():
         if cells.peak <= limit:
             raise NoSteadyState(
-                f"cannot answer: {in_words(beta, cells)}, where all others keep the limit; narrow the band "
-                f"or the range of beta, or add damping"
+                f"cannot answer: {describe_cells(beta, cells)}, where all others keep the limit; "
+                f"narrow the band or the range of beta, or add damping"
             )
 
 

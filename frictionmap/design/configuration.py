@@ -71,7 +71,7 @@ def load_design(path: str | Path, overrides: Sequence[str] = (), threads: int | 
     function = _FUNCTIONS[question][0]
     if question in _THREADED:
         arguments["threads"] = threads
-    ask = partial(_asked, function, common.system, {**arguments, "units": common.units})
+    ask = partial(_call_question, function, common.system, {**arguments, "units": common.units})
     return Design(common.title, path.stem, text, (*common.files, *files), question, ask)
 
 
@@ -80,7 +80,10 @@ def _with_samples(question: str, arguments: dict[str, Any], axes: Mapping[str, A
     quantile = arguments.pop("quantile", None)
     if axes is None:
         if quantile is not None:
-            raise InputError(f"quantile must go with samples in [axes]; got {quantile} without them")
+            raise InputError(
+                f"cannot use quantile without [axes]: it is one over their samples; add [axes] or leave it "
+                f"out; got {quantile}"
+            )
         return arguments
     if question != "robust":
         raise InputError(
@@ -89,12 +92,15 @@ def _with_samples(question: str, arguments: dict[str, Any], axes: Mapping[str, A
         )
     if "spread" in arguments:
         raise InputError(
-            f"spread must not be given beside [axes]: samples take its place; got {arguments['spread']}"
+            f"cannot use spread with [axes]: their samples take its place; leave one of them out; "
+            f"got {arguments['spread']}"
         )
     return {**arguments, "spread": Samples(axes) if quantile is None else Samples(axes, quantile)}
 
 
-def _asked(function: Callable[..., xr.Dataset], system: object, arguments: Mapping[str, Any]) -> xr.Dataset:
+def _call_question(
+    function: Callable[..., xr.Dataset], system: object, arguments: Mapping[str, Any]
+) -> xr.Dataset:
     """Call the function of a question; errors name keys of the table."""
     try:
         return function(system, **arguments)

@@ -141,7 +141,7 @@ def _is_outdone(bracket: Brackets, group: np.ndarray) -> np.ndarray:
         return bracket.at_m + _RISE * rise < largest[group]
 
 
-def sharpened(
+def refine_maxima(
     functions: Functions, bracket: Brackets, group: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Places and values of the maxima in brackets, function k in bracket k.

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import InputError, NoSteadyState
-from .extremes import Brackets, brackets_of, sharpened
+from .extremes import Brackets, brackets_of, refine_maxima
 from .limits import starts_matter
 from .minimum import Curve, Points, alike, local_minima, lowest, lowest_of, plateau_begin
 from .performance import Peaks, PerformanceCurve, Unclear
@@ -72,13 +72,13 @@ def sampled(task: Task, curve: PerformanceCurve) -> Points:
     points = Points(beta, largest(curve.whole(beta)))
     if not points.size.any() and task.low >= curve.stuck.beta > 0.0:
         raise InputError(
-            f"beta must begin below {curve.stuck.beta:.6g}, from which on the {task.response.words()} is 0 "
-            f"over the whole band; got {task.low:g}"
+            f"beta must begin below {curve.stuck.beta:.6g}, at or above which the {task.response.describe()} "
+            f"is 0 over the whole band; got {task.low:g}"
         )
     if not points.size.any():
         raise InputError(
-            f"response must be one that friction changes; got the {task.response.words()}, which is 0 over "
-            f"the whole band"
+            f"cannot minimise the {task.response.describe()}: it is 0 over the whole band, whatever the "
+            f"friction; choose another response or another band"
         )
     return points
 
@@ -144,12 +144,12 @@ def _refuse_unknown(curve: PerformanceCurve, best: Minimum, low: float, high: fl
 
 def _refuse(beta: float, cells: Unclear, best: Minimum) -> None:
     raise NoSteadyState(
-        f"cannot answer: {in_words(beta, cells)}, next to the optimum with the peak {best.size:.6g}; narrow "
-        f"the band or the range of beta, or add damping"
+        f"cannot answer: {describe_cells(beta, cells)}, next to the optimum with the peak {best.size:.6g}; "
+        f"narrow the band or the range of beta, or add damping"
     )
 
 
-def in_words(beta: float, cells: Unclear) -> str:
+def describe_cells(beta: float, cells: Unclear) -> str:
     """Cells at a friction ratio without a periodic steady state, in words."""
     counted = "1 cell of the band has" if cells.number == 1 else f"{cells.number} cells of the band have"
     found = f"{counted} no periodic steady state at beta = {beta:.6g}"
@@ -165,7 +165,7 @@ def irregular_cells(curve: PerformanceCurve, beta: float) -> str:
     nearest = min(curve.harmless, key=lambda known: abs(known - beta))
     count = len(curve.harmless) - 1
     others = f", as are those at {count} other friction ratios" if count else ""
-    return f"{in_words(nearest, curve.harmless[nearest])}: far below the peak, left out{others}"
+    return f"{describe_cells(nearest, curve.harmless[nearest])}: far below the peak, left out{others}"
 
 
 def _threshold(task: Task, curve: PerformanceCurve, share: float = 1.0) -> tuple[Minimum, Peaks] | None:
@@ -230,7 +230,7 @@ def _inner_maxima(curve: PerformanceCurve, points: Points) -> tuple[np.ndarray, 
         places, back = np.unique(beta, return_inverse=True)
         return largest(curve.at(places))[back]
 
-    return sharpened(values, chosen) if chosen.m.size else (np.empty(0), np.empty(0))
+    return refine_maxima(values, chosen) if chosen.m.size else (np.empty(0), np.empty(0))
 
 
 def find_robust(task: Task, curve: PerformanceCurve, spread: float) -> Optimum:

@@ -10,7 +10,7 @@ from ..general.held import least_static_friction, rest_scales, stick_scales
 from ..model.system import System
 from ..theory.boundary_curves import find_curves
 from .band import Band
-from .extremes import Brackets, brackets_of, chosen, joined, sharpened
+from .extremes import Brackets, brackets_of, chosen, joined, refine_maxima
 from .grading import FINE, FOLLOWED, graded, no_stop_poles, stick_poles
 from .minimum import Points
 from .watching import current_watch, look
@@ -126,10 +126,10 @@ def least_no_stop(system: System, band: Band, mu: float) -> tuple[Extreme, Point
     points = Points(r, no_stop_limit(system, r, mu))
     dips = brackets_of(r, -points.size)
     order = np.argsort(-dips.at_m, kind="stable")
-    place, value = sharpened(negative, chosen(dips, order[:1]))
+    place, value = refine_maxima(negative, chosen(dips, order[:1]))
     others = may_reach(chosen(dips, order[1:]), float(value[0]))
     if others.m.size:
-        places, values = sharpened(negative, others)
+        places, values = refine_maxima(negative, others)
         place, value = np.append(place, places), np.append(value, values)
     best = int(np.argmax(value))
     beta, most = float(-value[best]), points.size[np.isfinite(points.size)].max(initial=0.0)
@@ -149,7 +149,7 @@ def largest_stick(system: System, band: Band, mu: float | None) -> Extreme:
     def of_contacts(which: np.ndarray, r: np.ndarray) -> np.ndarray:
         return needed_friction(system, r)[np.arange(r.size), contact[which]]
 
-    places, values = sharpened(of_contacts, joined(peaks))
+    places, values = refine_maxima(of_contacts, joined(peaks))
     best = [np.flatnonzero(contact == j)[np.argmax(values[contact == j])] for j in range(count)]
     most, at = values[best], places[best]
     inside = (at > band.low) & (at < band.high)

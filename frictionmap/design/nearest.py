@@ -11,7 +11,7 @@ from ..general.problem import least_ratio as least_general_ratio
 from ..model.system import System
 from ..theory.boundary_curves import least_ratio
 from .band import Band
-from .extremes import brackets_of, chosen, joined, sharpened
+from .extremes import brackets_of, chosen, joined, refine_maxima
 from .limits import may_reach, needed_friction, no_stop_limit, no_stop_samples, stick_samples
 from .minimum import Points, changes, crossing
 
@@ -93,7 +93,7 @@ def _with_extremes(above: Functions, samples: _Samples) -> _Samples:
     def of(which: np.ndarray, r: np.ndarray) -> np.ndarray:
         return columns(above(r))[np.arange(r.size), function[which]]
 
-    return samples.with_more(above, sharpened(of, joined(parts))[0])
+    return samples.with_more(above, refine_maxima(of, joined(parts))[0])
 
 
 def nearest(limit: Limit, r: float) -> float:

@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from .extremes import Brackets, brackets_of, joined, sharpened
+from .extremes import Brackets, brackets_of, joined, refine_maxima
 from .limits import Extreme
 from .responses import Responses, Values, unresolved
 
@@ -220,7 +220,7 @@ class Performance:
             unknown = self._unclear(values, r, beta[own], peak[own])
             return np.where(unknown, np.inf, self._rounded(values.size))
 
-        places, sizes = sharpened(size, joined(parts), None if all_peaks else owner)
+        places, sizes = refine_maxima(size, joined(parts), None if all_peaks else owner)
         found = []
         for j, value in enumerate(beta.tolist()):
             own = np.flatnonzero(owner == j)

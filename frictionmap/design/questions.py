@@ -455,7 +455,7 @@ def _answer(
         **({} if study else task.limits()), **(further or {}), **_response_curves(task, best.beta),
         **{name: value for name, value in asked.items() if name in DESIGN},
     }  # fmt: skip
-    keys = {"response": task.response.asked(), "mu": task.mu, "beta": [task.low, task.high], **asked}
+    keys = {"response": task.response.as_config(), "mu": task.mu, "beta": [task.low, task.high], **asked}
     ds = answer(question, task.system, task.band, found, keys, task.units, task.scales, study)
     caution = irregular_cells(curve, best.beta)
     return ds.assign_attrs(warnings=caution) if caution else ds

@@ -42,8 +42,8 @@ class Response(NamedTuple):
     mass: int = 1  # counted from 1
     contact: int = 1
 
-    def words(self) -> str:
-        """In words."""
+    def describe(self) -> str:
+        """Describe the quantity."""
         if self.quantity == "contact":
             return f"displacement in contact {self.contact}"
         if self.quantity == "transmitted_force":
@@ -51,8 +51,8 @@ class Response(NamedTuple):
         what = "amplitude" if self.quantity == "amplitude" else "first harmonic"
         return f"{what} of mass {self.mass}"
 
-    def asked(self) -> dict[str, Any]:
-        """As in a configuration."""
+    def as_config(self) -> dict[str, Any]:
+        """Return the table `response` of a configuration."""
         of_mass = {"mass": self.mass} if self.quantity in ("amplitude", "first_harmonic") else {}
         of_contact = {"contact": self.contact} if self.quantity == "contact" else {}
         return {"quantity": self.quantity, **of_mass, **of_contact}
@@ -104,7 +104,7 @@ class Responses:
     def on_grid(self, r: np.ndarray, beta: np.ndarray) -> Values:
         """Values on a grid, (n_r, n_beta); r > 0 and beta >= 0 increase."""
         if self.system.general is not None:
-            return self._of_general({"r": r, "beta": beta})
+            return self._general_on_grid({"r": r, "beta": beta})
         axes = {"mu": np.array([self.mu]), "r": r, "beta": beta}
         parts = []
         for solver in self._solvers:
@@ -180,10 +180,10 @@ class Responses:
     def _general_at(self, r: np.ndarray, beta: np.ndarray) -> Values:
         """Points as rows of a grid with a beta of their own."""
         points, back = np.unique(np.stack((r, beta)), axis=1, return_inverse=True)
-        found = self._of_general({"r": points[0], "beta": points[1, :, np.newaxis]})
+        found = self._general_on_grid({"r": points[0], "beta": points[1, :, np.newaxis]})
         return Values(*(values[back.ravel(), 0] for values in found))
 
-    def _of_general(self, axes: dict[str, np.ndarray]) -> Values:
+    def _general_on_grid(self, axes: dict[str, np.ndarray]) -> Values:
         """Values on a grid, those of the worst start."""
         axes = axes | {"mu": np.array([self.mu])}
         return _largest([self._general(axes, solver) for solver in self._solvers])

@@ -64,12 +64,12 @@ class SampledPerformance:
     @property
     def unknown(self) -> dict[float, Unclear]:
         """Cells of all samples that may be above all known responses, by beta."""
-        return _of_all([curve.unknown for curve in self._curves])
+        return _merge_unclear([curve.unknown for curve in self._curves])
 
     @property
     def harmless(self) -> dict[float, Unclear]:
         """Cells of all samples with irregular motions far below the largest peak, by beta."""
-        return _of_all([curve.harmless for curve in self._curves])
+        return _merge_unclear([curve.harmless for curve in self._curves])
 
     @property
     def stuck(self) -> Extreme:
@@ -124,13 +124,13 @@ class SampledPerformance:
             with np.errstate(invalid="ignore"):  # infinite less infinite: that sample alone
                 near = np.abs(sizes - level) <= TWO_PEAKS * level
             owners = np.union1d(np.flatnonzero(near), place)
-            peaks = _in_one([at_beta[owner] for owner in owners], owners)
+            peaks = _merge_peaks([at_beta[owner] for owner in owners], owners)
             self._table[peaks.beta] = peaks
             chosen.append(peaks)
         return chosen
 
 
-def _of_all(tables: list[dict[float, Unclear]]) -> dict[float, Unclear]:
+def _merge_unclear(tables: list[dict[float, Unclear]]) -> dict[float, Unclear]:
     """Cells of several tables together: their number, and those that matter most."""
     found: dict[float, Unclear] = {}
     for beta in {beta for table in tables for beta in table}:
@@ -140,7 +140,7 @@ def _of_all(tables: list[dict[float, Unclear]]) -> dict[float, Unclear]:
     return found
 
 
-def _in_one(parts: list[Peaks], owners: np.ndarray) -> Peaks:
+def _merge_peaks(parts: list[Peaks], owners: np.ndarray) -> Peaks:
     """Peaks of several samples, from the highest down."""
     r, size = np.concatenate([one.r for one in parts]), np.concatenate([one.size for one in parts])
     owner = np.repeat(owners, [one.r.size for one in parts])

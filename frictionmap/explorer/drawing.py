@@ -49,11 +49,11 @@ def drawing_curves(system: System, tau: np.ndarray) -> dict[str, np.ndarray]:
     loaded = [row for row in _loaded(system) if row in rows]
     if system.excitation == "base":
         phasors = {1: 1.0 + 0.0j} if system.general is None else system.general.base
-        return {"base": _in_time({n: np.array([u]) for n, u in phasors.items()}, tau)[0]}
-    return {"load": _in_time({n: load[loaded] for n, load in _forces(system).items()}, tau)}
+        return {"base": _displacements_at({n: np.array([u]) for n, u in phasors.items()}, tau)[0]}
+    return {"load": _displacements_at({n: load[loaded] for n, load in _forces(system).items()}, tau)}
 
 
-def _in_time(phasors: Mapping[int, np.ndarray], tau: np.ndarray) -> np.ndarray:
+def _displacements_at(phasors: Mapping[int, np.ndarray], tau: np.ndarray) -> np.ndarray:
     """Re sum u_n e^{i n tau}, float32 (values, tau)."""
     total = sum(np.outer(u, np.exp(1j * n * tau)).real for n, u in phasors.items())
     return np.asarray(total, dtype=np.float32)

@@ -74,35 +74,35 @@ def answer_goal(view: View, goal: Goal, follower: Follower) -> dict[str, Any]:
     return {"goal": goal.question, "band": [band.low, band.high], **found}
 
 
-def _asked(function: Callable[..., xr.Dataset], view: View, goal: Goal, **further: Any) -> xr.Dataset:
+def _answer_of(function: Callable[..., xr.Dataset], view: View, goal: Goal, **further: Any) -> xr.Dataset:
     """The dataset of a question about a response."""
     assert goal.subject is not None
     return function(view.system, list(goal.band), mu=view.mu, **goal.subject.arguments, **further)
 
 
 def _least_peak(view: View, goal: Goal) -> dict[str, Any]:
-    found = _of_peaks(_asked(design.least_peak, view, goal))
+    found = _peaks_answer(_answer_of(design.least_peak, view, goal))
     if not found["peak"]:
         return {**found, "ranges": [[found["beta"], None]] if found["peak"] == 0.0 else []}
-    return {**found, "ranges": _ranges(_asked(design.at_most, view, goal, limit=NEAR * found["peak"]))}
+    return {**found, "ranges": _ranges(_answer_of(design.at_most, view, goal, limit=NEAR * found["peak"]))}
 
 
 def _at_most(view: View, goal: Goal) -> dict[str, Any]:
-    ds = _asked(design.at_most, view, goal, limit=goal.limit)
-    return {**_of_peaks(ds), "ranges": _ranges(ds), "limit": goal.limit}
+    ds = _answer_of(design.at_most, view, goal, limit=goal.limit)
+    return {**_peaks_answer(ds), "ranges": _ranges(ds), "limit": goal.limit}
 
 
 def _no_stop(view: View, goal: Goal) -> dict[str, Any]:
-    found = _of_boundary(design.no_stop(view.system, list(goal.band), view.mu))
+    found = _boundary_answer(design.no_stop(view.system, list(goal.band), view.mu))
     return {**found, "ranges": [] if found["beta"] == 0.0 else [[0.0, found["beta"]]]}
 
 
 def _stuck(view: View, goal: Goal) -> dict[str, Any]:
-    found = _of_boundary(design.stuck(view.system, list(goal.band), view.mu))
+    found = _boundary_answer(design.stuck(view.system, list(goal.band), view.mu))
     return {**found, "ranges": [] if found["beta"] is None else [[found["beta"], None]]}
 
 
-def _of_boundary(ds: xr.Dataset) -> dict[str, Any]:
+def _boundary_answer(ds: xr.Dataset) -> dict[str, Any]:
     """The boundary; with mu > 1 also `some`, the friction with which it is so from some starts."""
     found = {"beta": _finite(ds["beta"]), "r": _finite(ds["at_r"])}
     for name in ("beta_no_stop_some_starts", "beta_stuck_some_starts"):
@@ -111,7 +111,7 @@ def _of_boundary(ds: xr.Dataset) -> dict[str, Any]:
     return found
 
 
-def _of_peaks(ds: xr.Dataset) -> dict[str, Any]:
+def _peaks_answer(ds: xr.Dataset) -> dict[str, Any]:
     """The optimum and its peaks: the largest one, or two equal ones.  Where nothing moves from its friction
     on there are none, and `r` decides.  `peak` is None where it is infinite.
     """

@@ -62,10 +62,10 @@ class Scene:
         )
         general = self.system.general
         if general is None:
-            return (mu, *_of_damping(self.system), *_of_ratios(self.system))
+            return (mu, *_damping_sliders(self.system), *_ratio_sliders(self.system))
         first = () if general.elastic.all() else (mu,)  # at break-away a spring would jump
         own = contact_sliders(self.system)
-        return (*first, *_of_damping(self.system), *own, *_of_ratios(self.system))
+        return (*first, *_damping_sliders(self.system), *own, *_ratio_sliders(self.system))
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
@@ -108,7 +108,7 @@ def _damped_alike(system: System) -> bool:
     return system.damping_ratios is not None and len(set(system.damping_ratios)) == 1  # type: ignore[arg-type]
 
 
-def _of_damping(system: System) -> tuple[Slider, ...]:
+def _damping_sliders(system: System) -> tuple[Slider, ...]:
     given = system.damping_ratios
     if given is None:  # a matrix C
         return ()
@@ -125,7 +125,7 @@ def _of_damping(system: System) -> tuple[Slider, ...]:
     )
 
 
-def _of_ratios(system: System) -> tuple[Slider, ...]:
+def _ratio_sliders(system: System) -> tuple[Slider, ...]:
     if system.matrices is not None or not 1 < system.n <= _OFFERED_RATIOS:
         return ()
 

@@ -104,12 +104,12 @@ class Page:
             "/map": self._map,
             "/motion": self._motion,
             "/others": self._others,
-            "/cut": self._cut,
+            "/cut": self._cut_answer,
             "/goal": self._goal,
             "/configuration.toml": self._configuration,
             "/sizes": self._sizes,
-            "/map.nc": self._saved(".nc"),
-            "/map.csv": self._saved(".csv"),
+            "/map.nc": self._download_answer(".nc"),
+            "/map.csv": self._download_answer(".csv"),
         }
 
     def warm(self) -> None:
@@ -237,14 +237,14 @@ class Page:
     def _motion(self, text: str, gone: Callable[[], bool]) -> Answer:
         from .cell import motion
 
-        return self._of_cell("motion", motion, text, gone)
+        return self._cell_answer("motion", motion, text, gone)
 
     def _others(self, text: str, gone: Callable[[], bool]) -> Answer:
         from .cell import others
 
-        return self._of_cell("others", others, text, gone)
+        return self._cell_answer("others", others, text, gone)
 
-    def _of_cell(self, kind: str, work: Callable, text: str, gone: Callable[[], bool]) -> Answer:
+    def _cell_answer(self, kind: str, work: Callable, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
         from .scene_description import units_of
 
@@ -255,7 +255,7 @@ class Page:
             header, arrays = work(query.view, *cell, job)
         return _packet(({**header, **units_of(self.scene, query.view)}, arrays))
 
-    def _cut(self, text: str, gone: Callable[[], bool]) -> Answer:
+    def _cut_answer(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries
         from .cut import cut
         from .scene_description import units_of
@@ -293,7 +293,7 @@ class Page:
         found = sizes(self.scene, query.view, *queries.piece_of(query))
         return _json({ending: in_bytes(size) for ending, size in found.items()})
 
-    def _saved(self, ending: str) -> Callable[[str, Callable[[], bool]], Answer]:
+    def _download_answer(self, ending: str) -> Callable[[str, Callable[[], bool]], Answer]:
         def save(text: str, gone: Callable[[], bool]) -> Answer:
             from . import queries
             from .downloads import saved_map

@@ -47,7 +47,7 @@ def record_of(store: Path, attributes: Mapping[str, Any]) -> str:
     The checksum of the record itself stands before it.
     """
     record = {
-        "attributes": {name: _of_value(value) for name, value in attributes.items()},
+        "attributes": {name: _attribute_checksum(value) for name, value in attributes.items()},
         "files": {
             path.relative_to(store).as_posix(): _crc32(path.read_bytes()) for path in _descriptions(store)
         },
@@ -69,7 +69,7 @@ def attributes_of(store: Path) -> dict[str, Any]:
         return {}
 
 
-def _of_value(value: object) -> str:
+def _attribute_checksum(value: object) -> str:
     """Checksum of an attribute."""
     return _crc32(json.dumps(value, sort_keys=True).encode())
 
@@ -86,7 +86,7 @@ def changed_description(store: Path, attributes: Mapping[str, Any]) -> Path | No
         return store / _DESCRIPTION
     record = json.loads(text)
     for name, found in record["attributes"].items():
-        if name not in attributes or _of_value(attributes[name]) != found:
+        if name not in attributes or _attribute_checksum(attributes[name]) != found:
             return store / _DESCRIPTION
     for name, found in record["files"].items():
         file = store / name

@@ -66,9 +66,9 @@ def _rows(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
         yield ("working point: r" if question == "margin" else "decided at r"), f"{float(ds['at_r']):.9g}"
     if {"second", "second_ratio"} <= set(ds.variables):
         yield f"ratio of contact {int(ds['second'])}", _second_force(ds)
-    yield from _of_peaks(ds)
-    yield from _of_ranges(ds)
-    yield from _of_margins(ds)
+    yield from _peak_rows(ds)
+    yield from _range_rows(ds)
+    yield from _margin_rows(ds)
     for name, words in _OF_BAND.items():
         if name in ds and (np.isfinite(float(ds[name])) or name == "beta_stuck"):
             yield words, f"{float(ds[name]):.6g}"
@@ -88,7 +88,7 @@ def _second_force(ds: xr.Dataset) -> str:
     return f"{ratio:.6g}{force}"
 
 
-def _of_peaks(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
+def _peak_rows(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
     if "peak" not in ds.coords:
         return
     response = str(ds.attrs.get("response", "response"))
@@ -133,7 +133,7 @@ def _changes(ds: xr.Dataset) -> list[str]:
     return [f"{100.0 * (value / least - 1.0):+.2f} %" if least > 0.0 else f"{value:.6g}" for value in values]
 
 
-def _of_ranges(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
+def _range_rows(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
     if not {"interval_begin", "interval_end"} <= set(ds):
         return
     begins, ends = ds["interval_begin"].values, ds["interval_end"].values
@@ -145,7 +145,7 @@ def _of_ranges(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
         yield (f"friction ratio beta{limit}" if k == 0 else ""), words
 
 
-def _of_margins(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
+def _margin_rows(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
     for name, words in (("beta_lim", "to stops (beta_lim)"), ("beta_stick", "to sticking (beta_stick)")):
         if f"margin_{name}" in ds and np.isfinite(float(ds[f"margin_{name}"])):
             yield f"friction {words}", f"{100.0 * float(ds[f'margin_{name}']):+.6g} %"

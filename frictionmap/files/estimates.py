@@ -105,17 +105,17 @@ def estimates_in_short(ds: xr.Dataset) -> str:
     for name in ds["parameter"].values:
         one = ds.sel(parameter=name)
         if not one["known"]:
-            words.append(f"{name} {_in_short(one)} {unit_in_words(str(one['unit'].values))}".rstrip())
+            words.append(f"{name} {_short_estimate(one)} {unit_in_words(str(one['unit'].values))}".rstrip())
     return ", ".join(part.replace(" ", "\u00a0") for part in words)
 
 
-def _in_short(one: xr.Dataset) -> str:
+def _short_estimate(one: xr.Dataset) -> str:
     """An estimate with its standard error, or with its interval where only that can be used."""
     value, error, lower, upper = (float(one[key]) for key in ("estimate", "standard_error", "lower", "upper"))
-    return f"{value:.4g} ({lower:.4g} to {upper:.4g})" if np.isnan(error) else _with_error(value, error)
+    return f"{value:.4g} ({lower:.4g} to {upper:.4g})" if np.isnan(error) else _format_to_error(value, error)
 
 
-def _with_error(value: float, error: float) -> str:
+def _format_to_error(value: float, error: float) -> str:
     """Format a value to the second digit of its standard error."""
     if error == 0.0:
         return f"{value:.6g}"

@@ -49,20 +49,20 @@ def _table(ds: xr.Dataset) -> Any:
         lines = [name for name in ds.data_vars if ds[name].dims == (over,)]
         return (ds[lines] if over else ds).to_dataframe()
     if kind(ds) == "shares":
-        ds = _in_columns(_in_columns(ds, "outcome"), "quantile")
+        ds = _split_dimension(_split_dimension(ds, "outcome"), "quantile")
     table: dict[str, xr.DataArray] = {}
     dims = [str(name) for name in COORDINATES if name in ds.dims]
     for name, variable in ds.data_vars.items():
         if set(variable.dims) <= set(dims):
-            table[str(name)] = _in_words(variable)
+            table[str(name)] = _decode_flags(variable)
         elif set(variable.dims) - set(dims) == {"contact"}:
-            table |= _of_contacts(str(name), _in_words(variable))
+            table |= _split_contacts(str(name), _decode_flags(variable))
     wide = xr.Dataset(table)
     checks.cells(1, 1, math.prod(wide.sizes.values()), name="a table")
     return wide.to_dataframe(dim_order=[dim for dim in dims if dim in wide.dims])
 
 
-def _in_columns(ds: xr.Dataset, dim: str) -> xr.Dataset:
+def _split_dimension(ds: xr.Dataset, dim: str) -> xr.Dataset:
     """Replace variables along a dimension by one variable per value."""
     columns: dict[str, xr.DataArray] = {}
     for name, variable in ds.data_vars.items():
@@ -74,13 +74,13 @@ def _in_columns(ds: xr.Dataset, dim: str) -> xr.Dataset:
     return xr.Dataset(columns)
 
 
-def _of_contacts(name: str, variable: xr.DataArray) -> dict[str, xr.DataArray]:
+def _split_contacts(name: str, variable: xr.DataArray) -> dict[str, xr.DataArray]:
     """A variable of every contact as one of each, by the numbers of the contacts."""
     numbers = range(1, variable.sizes["contact"] + 1)
     return {f"{name}_{k}": variable.isel({"contact": k - 1}, drop=True) for k in numbers}
 
 
-def _in_words(variable: xr.DataArray) -> xr.DataArray:
+def _decode_flags(variable: xr.DataArray) -> xr.DataArray:
     """Replace codes by their names."""
     label = LABELS.get(str(variable.name))
     if label is None or not label.codes or label.flags == "flag_masks":

@@ -7,7 +7,7 @@ one number a mass, stop after start, files that are there; and JSON has no diffe
 from typing import Any
 
 from ..model.variations import CONTACT_NUMBERS, LISTS, NUMBERS
-from .keys import KEYS, TABLES, Key, Schema, axis, in_words, number, several
+from .keys import KEYS, TABLES, Key, Schema, axis, describe_values, number, several
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -72,7 +72,7 @@ def described(keys: tuple[Key, ...]) -> dict[str, Any]:
 
 
 def _described(key: Key) -> dict[str, Any]:
-    text = f"{key.meaning}; {in_words(key)}"
+    text = f"{key.meaning}; {describe_values(key)}"
     if key.default is None:
         return {"description": text, **key.valid}
     return {"description": text, "default": key.default, **key.valid}

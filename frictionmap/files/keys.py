@@ -129,12 +129,12 @@ def _setting(name: str, meaning: str, valid: Schema) -> Key:
     return Key(name, meaning, valid, getattr(_SOLVER, name))
 
 
-def _of_system(name: str, meaning: str, valid: Schema, **more: Any) -> Key:
+def _system_key(name: str, meaning: str, valid: Schema, **more: Any) -> Key:
     default = getattr(_ONE_MASS, name)
     return Key(name, meaning, valid, list(default) if isinstance(default, tuple) else default, **more)
 
 
-def _of_grid(name: str, meaning: str, **more: Any) -> Key:
+def _grid_key(name: str, meaning: str, **more: Any) -> Key:
     return Key(name, meaning, axis("", **AXES[name]), words=_RANGE, **more)
 
 
@@ -232,14 +232,14 @@ GENERAL_KEYS = (
 KEYS: dict[str, tuple[Key, ...]] = {
     "": (Key("title", "title of plots and files", _TEXT, example='"A title"'),),
     "system": (
-        _of_system("contact", "kind of contact", word(*CONTACTS)),
-        _of_system(
+        _system_key("contact", "kind of contact", word(*CONTACTS)),
+        _system_key(
             "contact_masses",
             "the mass in contact, or for between-masses the two masses A < B; counted from 1",
             several(_DOF, maxItems=2),
             words='a list of one or two whole numbers >= 1, or of labels of a file, "NODE.DOF"',
         ),
-        _of_system(
+        _system_key(
             "load_mass",
             "the mass on which the harmonic load acts, counted from 1",
             _DOF,
@@ -252,13 +252,13 @@ KEYS: dict[str, tuple[Key, ...]] = {
             example="[1.0]",
             words="for every mass a number or [real part, imaginary part]",
         ),
-        _of_system(
+        _system_key(
             "mass_ratios",
             "gamma_i = m_i/m_1 of a chain; the first is 1",
             _RATIOS,
             words="numbers > 0",
         ),
-        _of_system(
+        _system_key(
             "stiffness_ratios",
             "kappa_i = k_i/k_1 of a chain; the first is 1; spring 1 connects mass 1 to the ground",
             _RATIOS,
@@ -311,17 +311,17 @@ KEYS: dict[str, tuple[Key, ...]] = {
             number(above=0.0),
             example="12.3",
         ),
-        _of_system(
+        _system_key(
             "stiffness_scale",
             "with matrices: displacements are in units of P/stiffness_scale; given in the units of K",
             number(above=0.0),
         ),
-        _of_system(
+        _system_key(
             "excitation",
             "excitation by a force or by the base; a joined base-wall always has base excitation",
             word(*EXCITATIONS),
         ),
-        _of_system(
+        _system_key(
             "damping_reference",
             "damping acts on velocities relative to the ground, or relative to a moving base",
             word(*DAMPING_REFERENCES),
@@ -343,7 +343,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
             example="1.0",
             words=_RANGE,
         ),
-        _of_grid("mu", "static-to-kinetic friction ratio, >= 1", default=[1.0]),
+        _grid_key("mu", "static-to-kinetic friction ratio, >= 1", default=[1.0]),
     ),
     "solver": (
         _setting(
@@ -487,20 +487,20 @@ def names(section: str) -> tuple[str, ...]:
     return tuple(key.name for key in KEYS[section])
 
 
-def in_words(key: Key) -> str:
+def describe_values(key: Key) -> str:
     """Describe the valid values of a key in a few words."""
-    return key.words or _in_words(key.valid)
+    return key.words or _describe_schema(key.valid)
 
 
-def _in_words(valid: Schema) -> str:
+def _describe_schema(valid: Schema) -> str:
     if "enum" in valid:
         *others, last = (f'"{one}"' for one in valid["enum"])
         return f"{', '.join(others)} or {last}" if others else last
     if "anyOf" in valid:
-        return " or ".join(_in_words(one) for one in valid["anyOf"])
+        return " or ".join(_describe_schema(one) for one in valid["anyOf"])
     if valid["type"] == "array":
         some = "one or more of " if "enum" in valid["items"] else ""
-        return f"a list of {some}{_in_words(valid['items'])}"
+        return f"a list of {some}{_describe_schema(valid['items'])}"
     words = {"integer": "a whole number", "number": "a number", "string": "text"}[valid["type"]]
     ends = [
         f"{sign} {valid[name]:g}"

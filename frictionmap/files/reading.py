@@ -283,7 +283,9 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
             used.update(dims)
     if what in ("map", "curves"):
         used.update(CELL)  # also if what there is depends on frequency only
-    return xr.Dataset(variables, coords=_axes(ds, what, used) | _beside(ds, what, used), attrs=ds.attrs)
+    return xr.Dataset(
+        variables, coords=_axes(ds, what, used) | _companion_axes(ds, what, used), attrs=ds.attrs
+    )
 
 
 def _dims_here(ds: xr.Dataset, name: str, what: str) -> tuple[str, ...]:
@@ -326,7 +328,7 @@ def _check_increasing(name: str, values: np.ndarray) -> None:
         raise InputError(f"{name} must be strictly increasing; got {second} after {first}")
 
 
-def _beside(ds: xr.Dataset, what: str, used: set[str]) -> dict[str, xr.Variable]:
+def _companion_axes(ds: xr.Dataset, what: str, used: set[str]) -> dict[str, xr.Variable]:
     """Axes in SI units that accompany the axes in use; contacts and their names."""
     beside = {}
     for name in BESIDE:

@@ -104,7 +104,7 @@ def choose(
             rows[dim] = [int(found[0])]  # an axis yet
     part = ds.isel({**point, **rows})
     parameters = {dim: place for dim, place in point.items() if dim != "contact"}  # it is one system still
-    return part.assign_attrs(_of_point(ds, parameters)) if parameters else part
+    return part.assign_attrs(_point_attributes(ds, parameters)) if parameters else part
 
 
 def _further(ds: xr.Dataset, name: str, further: Sequence[str]) -> bool:
@@ -141,14 +141,14 @@ def _word(value: object) -> str:
     return checks.one_line(value) if isinstance(value, str) else f"{value:g}"
 
 
-def _of_point(ds: xr.Dataset, point: Mapping[str, int]) -> dict[str, str]:
+def _point_attributes(ds: xr.Dataset, point: Mapping[str, int]) -> dict[str, str]:
     """Title, system and configuration of a point; the latter two are empty if unknown."""
     words = ", ".join(f"{name} = {_word(_numbers(ds, name)[place])}" for name, place in point.items())
     title = f"{ds.attrs.get('title', '')}, {words}".removeprefix(", ")
     system = text = ""
     config = _config(ds)
     if config is not None and config.variations is not None:
-        left = _in_file(config.variations, ds)
+        left = _variations_in_file(config.variations, ds)
         if left is not None:
             left = left.chosen(point)
             axes = {"r": config.r, "beta": config.beta, "mu": config.mu}
@@ -159,7 +159,7 @@ def _of_point(ds: xr.Dataset, point: Mapping[str, int]) -> dict[str, str]:
     return {"title": title, "system": system, "config": text}
 
 
-def _in_file(variations: Variations, ds: xr.Dataset) -> Variations | None:
+def _variations_in_file(variations: Variations, ds: xr.Dataset) -> Variations | None:
     """The variations that a dataset has: a slice of a file has fewer values, or only one."""
     if any(number.dimension not in ds.coords for axis in variations.axes for number in axis.numbers):
         return None

@@ -37,7 +37,7 @@ def describe_study(path: Path) -> str:
     """
     with opened(path) as found:
         with naming(path):
-            ds = _in_order(found)
+            ds = _reorder(found)
             _check_sizes(ds)
         lines = [*header_lines(ds, "map"), *axis_lines(ds), *variable_lines(ds)]
         lines += _blocks(ds)
@@ -45,7 +45,7 @@ def describe_study(path: Path) -> str:
         return "\n".join([*lines, cells, *(f"  {line}" for line in causes)])
 
 
-def _in_order(ds: xr.Dataset) -> xr.Dataset:
+def _reorder(ds: xr.Dataset) -> xr.Dataset:
     """Axes and variables as a map has them: a store lists them in any order."""
     others = [name for name in ds.coords if name not in COORDINATES and ds[name].dtype.kind in "iufU"]
     numbers = sorted(map(str, others), key=natural)
@@ -109,13 +109,13 @@ def count_codes(ds: xr.Dataset, name: str) -> Counter[int]:
         if begun is not None and not begun[place]:
             counter[int(CELL_VARIABLES[name].unresolved)] += one.size
             continue
-        for part in _in_rows(one):
+        for part in _row_blocks(one):
             values, counts = np.unique(part.values, return_counts=True)
             counter.update(dict(zip(values.tolist(), counts.tolist(), strict=True)))
     return counter
 
 
-def _in_rows(one: xr.DataArray) -> Iterator[xr.DataArray]:
+def _row_blocks(one: xr.DataArray) -> Iterator[xr.DataArray]:
     """The cells of one map, whole rows of them at a time."""
     step = max(1, _AT_ONCE // one.sizes.get("beta", 1))
     for first in range(0, one.sizes.get("r", 1), step):

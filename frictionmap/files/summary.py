@@ -142,7 +142,7 @@ def describe_file(ds: xr.Dataset) -> str:
         others = [name for name in listed if name not in few]
         lines += ["values", *_numbers_in_lines(ds, few)]
         lines += [line for name in others for line in _entry(str(name), _values(ds[name]))]
-    lines += list(_in_short(ds, what))
+    lines += list(_describe_results(ds, what))
     return "\n".join(lines)
 
 
@@ -257,7 +257,7 @@ def _values(variable: xr.DataArray) -> str:
     )
 
 
-def _in_short(ds: xr.Dataset, what: str) -> Iterator[str]:
+def _describe_results(ds: xr.Dataset, what: str) -> Iterator[str]:
     """Describe the results and unresolved cells in the last lines."""
     if what in ("map", "curves"):
         yield describe_map(ds)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..datasets.provenance import value_text
-from .keys import KEYS, TABLES, Key, in_words
+from .keys import KEYS, TABLES, Key, describe_values
 
 _WIDTH = 100
 
@@ -82,7 +82,7 @@ def section_text(section: str, keys: tuple[Key, ...], said: Mapping[str, str], w
 
 
 def _explained(key: Key) -> list[str]:
-    return [*_comment(key.meaning, "# "), *_comment(in_words(key), "#   ")]
+    return [*_comment(key.meaning, "# "), *_comment(describe_values(key), "#   ")]
 
 
 def _comment(text: str, indent: str) -> list[str]:

@@ -81,9 +81,9 @@ def log_likelihood(ds: xr.Dataset) -> LogLikelihood:
                 f"cannot evaluate the likelihood: ds has no variable {needed}; give a dataset of identify"
             )
     if {"time", "half_cycles", "at_rest"} <= set(ds.variables):
-        return _of_decay(ds)
+        return _decay_likelihood(ds)
     if {"frequency", "mass", "quantity"} <= set(ds.variables) and "f_k1m1" in ds["parameter"]:
-        return _of_chain(ds)
+        return _chain_likelihood(ds)
     raise InputError(
         "cannot evaluate the likelihood: ds is neither of a free decay nor of a sweep; use one of these"
     )
@@ -99,7 +99,7 @@ def _function(
     return LogLikelihood(fitted, problem, start, logarithmic, level)
 
 
-def _of_decay(ds: xr.Dataset) -> LogLikelihood:
+def _decay_likelihood(ds: xr.Dataset) -> LogLikelihood:
     names = (*PARAMETERS, DRIFT)[: ds.sizes["parameter"]]
     values = ds["estimate"].sel(parameter=list(names)).values.astype(float)
     held = ds["known"].sel(parameter=list(names)).values == 1
@@ -123,7 +123,7 @@ def _of_decay(ds: xr.Dataset) -> LogLikelihood:
     )
 
 
-def _of_chain(ds: xr.Dataset) -> LogLikelihood:
+def _chain_likelihood(ds: xr.Dataset) -> LogLikelihood:
     shown = ds["parameter"].values.tolist()
     n = sum(name in ("f_k1m1", "gamma") or name.startswith("mass_ratio") for name in shown)
     names = chain_names(n)

@@ -186,7 +186,7 @@ def least_value(harmonics: Mapping[int, complex]) -> float:
     return float((phasors * np.exp(1j * orders * tau)).real.sum(axis=1).min())
 
 
-def _of_contact(k: int, error: InputError) -> InputError:
+def _name_contact(k: int, error: InputError) -> InputError:
     """Return an error about a key of a contact, with the contact named."""
     text = str(error)
     key = "cannot use "
@@ -215,7 +215,7 @@ def checked_contacts(given: object) -> tuple[Contact, ...]:
             try:
                 one = Contact(**one)
             except InputError as error:
-                raise _of_contact(k, error) from None
+                raise _name_contact(k, error) from None
         if not isinstance(one, Contact):
             raise InputError(f"contacts[{k}] must be a Contact; got {checks.one_line(one)}")
         found.append(one)

@@ -490,7 +490,7 @@ class System:
         reduced, decoupled = self.accuracy(r), self.decoupling(r)
         where = f", for r = {r[0]:g} to {r[-1]:g}"
         if reduced is not None:
-            words["reduction"] = f"{reduced.words()}{where}; {reduced.beyond()}"
+            words["reduction"] = f"{reduced.describe()}{where}; {reduced.beyond()}"
         if decoupled is not None:
             words["decoupling"] = (
                 f"C, replaced by its modal diagonal, changes linear responses by {decoupled:.1e}{where}"

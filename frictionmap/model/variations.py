@@ -33,6 +33,14 @@ LISTS = {
     "contact_masses": "mass in contact, number {0} of them",
 }
 _WHOLE = ("load_mass", "contact_masses")
+
+#: What the entries of a list belong to, one and several.
+_COUNTED = {
+    "mass_ratios": ("mass", "masses"),
+    "stiffness_ratios": ("mass", "masses"),
+    "contact_masses": ("mass in contact", "masses in contact"),
+    "contacts": ("contact", "contacts"),
+}
 _INDEXED = re.compile(r"([a-z_]+)\[([1-9][0-9]*)\]")
 
 #: Numbers of one of several contacts, such as ``contacts[2].force``.
@@ -84,9 +92,7 @@ class Number:
             return given
         values = list(before or ())
         if self.place > len(values):
-            raise InputError(
-                f"axes.{self.text} must have an index <= {len(values)}, as {self.key}; got {self.place}"
-            )
+            raise self._unknown(len(values))
         values[self.place - 1] = given
         return values
 
@@ -95,12 +101,22 @@ class Number:
         values = list(contacts or ())
         assert self.place is not None
         if self.place > len(values):
-            raise InputError(
-                f"axes.{self.text} must have an index <= {len(values)}, as contacts; got {self.place}"
-            )
+            raise self._unknown(len(values))
         rival = {"force": {"ratio": None}, "ratio": {"force": None}}.get(self.part, {})
         values[self.place - 1] = replace(values[self.place - 1], **{self.part: float(value)}, **rival)
         return values
+
+    def _unknown(self, count: int) -> InputError:
+        """Return the error of an index beyond a list with `count` entries."""
+        if count == 0:
+            return InputError(
+                f"unknown axis {self.text}: the system has no {self.key}; give them in the system"
+            )
+        one, many = _COUNTED.get(self.key, (f"value of {self.key}", f"values of {self.key}"))
+        return InputError(
+            f"unknown axis {self.text}: the system has {count} {one if count == 1 else many}; "
+            f"use an index from 1 to {count}"
+        )
 
 
 @dataclass(frozen=True, eq=False)  # comparing arrays gives no single truth value

@@ -47,7 +47,7 @@ def _named(variable: str, events: str, names: dict[int, str]) -> Counted:
     return Counted(variable, events, tuple(names.get(k, label) for k, label in enumerate(_LABELS)))
 
 
-def _of_slips(variable: str, event: str, uncounted: str) -> Counted:
+def _slip_classes(variable: str, event: str, uncounted: str) -> Counted:
     """Classes of an elastic contact by the number of its slips or slip reversals."""
     numbers = {ONE + k - 1: f"{k} {event}{'s' * (k > 1)}" for k in range(1, MORE - ONE + 1)}
     others = {
@@ -62,8 +62,8 @@ def _of_slips(variable: str, event: str, uncounted: str) -> Counted:
 
 
 STOPS = Counted("stops_per_cycle", "stops", _LABELS)
-REVERSALS = _of_slips("slip_reversals_per_cycle", "slip reversal", "slips without reversal")
-SLIPS = _of_slips("slips_per_cycle", "slip", "slips, not counted")
+REVERSALS = _slip_classes("slip_reversals_per_cycle", "slip reversal", "slips without reversal")
+SLIPS = _slip_classes("slips_per_cycle", "slip", "slips, not counted")
 
 #: Classes of the regime of several contacts together.
 OVERALL = _named(
@@ -98,7 +98,7 @@ def blocks(shape: tuple[int, ...]) -> Iterator[slice]:
         yield slice(first, first + step)
 
 
-def _of_stops(stops: np.ndarray) -> np.ndarray:
+def _stop_classes(stops: np.ndarray) -> np.ndarray:
     """Class of stick-slip cells by number of stops; NaN for a motion without such a number, as at r = 0."""
     nearest = np.rint(np.nan_to_num(stops))
     found = np.clip(ONE - 1 + nearest, ONE, MORE).astype(np.uint8)
@@ -119,7 +119,7 @@ def of_cells(regime: np.ndarray | None, stops: np.ndarray | None) -> np.ndarray:
         found[regime == regimes.CONTINUOUS] = CONTINUOUS
         found[regime == regimes.ONE_WAY_SLIDING] = ONE_WAY
         slip = regime == regimes.STICK_SLIP
-    found[slip] = UNCOUNTED if stops is None else _of_stops(stops[slip])
+    found[slip] = UNCOUNTED if stops is None else _stop_classes(stops[slip])
     return found
 
 

@@ -35,7 +35,7 @@ _KINDS = {
 }
 
 
-def _of_system(system: System | None) -> dict[str, np.ndarray]:
+def _system_features(system: System | None) -> dict[str, np.ndarray]:
     if system is None:
         return {}
     known = {"natural_frequency": system.modes.w}
@@ -46,14 +46,14 @@ def _of_system(system: System | None) -> dict[str, np.ndarray]:
 
 def frequencies_of(system: System | None) -> list[Feature]:
     """Natural frequencies of a system, also with the contact held; empty for an unknown system."""
-    return [Feature(*_KINDS[name], places) for name, places in _of_system(system).items()]
+    return [Feature(*_KINDS[name], places) for name, places in _system_features(system).items()]
 
 
 def features_of(ds: xr.Dataset) -> list[Feature]:
     """Characteristic frequencies of a dataset, from its variables or from its configuration."""
     known = {name: ds[name].values for name in _KINDS if name in ds}
     if "natural_frequency" not in known:
-        known |= _of_system(stored_system(ds))
+        known |= _system_features(stored_system(ds))
     found = [Feature(*_KINDS[name], known[name]) for name in _KINDS if name in known]
     natural = known.get("natural_frequency", np.empty(0))
     # fractions of the frequencies of several masses would fill the axis; for one mass they are the invariant

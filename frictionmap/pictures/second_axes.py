@@ -20,28 +20,28 @@ _NAMES = {
 
 def frequency_on_top(ax: Axes, ds: xr.Dataset) -> None:
     """Add a frequency axis above a panel whose lower axis is r."""
-    _beside(ax, ds, "x", "frequency", _NAMES["frequency"], float(np.max(ds["r"].values)))
+    _add_second_axis(ax, ds, "x", "frequency", _NAMES["frequency"], float(np.max(ds["r"].values)))
 
 
 def force_on_top(ax: Axes, ds: xr.Dataset) -> None:
     """Add a force axis above a panel whose lower axis is beta and has its limits."""
-    _beside(ax, ds, "x", "force", _NAMES["force"], max(abs(limit) for limit in ax.get_xlim()))
+    _add_second_axis(ax, ds, "x", "force", _NAMES["force"], max(abs(limit) for limit in ax.get_xlim()))
 
 
 def time_on_top(ax: Axes, ds: xr.Dataset) -> None:
     """Add a time axis above a panel whose lower axis is tau/pi."""
-    _beside(ax, ds, "x", "time", _NAMES["time"], float(np.max(ds["tau"].values)), np.pi)
+    _add_second_axis(ax, ds, "x", "time", _NAMES["time"], float(np.max(ds["tau"].values)), np.pi)
 
 
 def on_the_right(ax: Axes, ds: xr.Dataset, measure: str, name: str = "") -> None:
     """Add an axis of forces, lengths or work right of a panel whose limits are set; `name` is its label."""
     largest = max(abs(limit) for limit in ax.get_ylim())
-    _beside(ax, ds, "y", measure, name or _NAMES[measure], largest)
+    _add_second_axis(ax, ds, "y", measure, name or _NAMES[measure], largest)
 
 
 def length_on_top(ax: Axes, ds: xr.Dataset, name: str) -> None:
     """Add an axis of displacements above a panel whose lower axis is in units of P/k1."""
-    _beside(ax, ds, "x", "length", name, max(abs(limit) for limit in ax.get_xlim()))
+    _add_second_axis(ax, ds, "x", "length", name, max(abs(limit) for limit in ax.get_xlim()))
 
 
 def in_brackets(ds: xr.Dataset, axis: str, index: int = 0) -> str:
@@ -53,7 +53,7 @@ def in_brackets(ds: xr.Dataset, axis: str, index: int = 0) -> str:
     return f" ({value:.6g} {BESIDE[name].units})"
 
 
-def _beside(
+def _add_second_axis(
     ax: Axes, ds: xr.Dataset, axis: str, measure: str, name: str, largest: float, step: float = 1.0
 ) -> None:
     """Add a second axis, if the reference value of the panel's quantity in units of `step` is known."""

@@ -113,14 +113,14 @@ def _memory(
 
 def available_memory() -> float:
     """Bytes that this process may still allocate; infinite where the system does not report it."""
-    found = [_of_machine()]
+    found = [_machine_memory()]
     for most, used in _LIMITS:
         with contextlib.suppress(OSError, ValueError):
             found.append(float((_GROUP / most).read_text()) - float((_GROUP / used).read_text()))
     return min(found)
 
 
-def _of_machine() -> float:
+def _machine_memory() -> float:
     with contextlib.suppress(OSError, ValueError, IndexError):
         for line in Path("/proc/meminfo").read_text().splitlines():
             if line.startswith("MemAvailable:"):
@@ -142,11 +142,11 @@ def refuse_map_without_memory(
     """
     needed = memory_of_map(counts, system.n, tuple(solver.outputs), units)
     if system.general is not None:
-        needed += _of_contacts(counts, system.general.count, system.n)
+        needed += _contact_bytes(counts, system.general.count, system.n)
     _refuse(counts, needed, "outputs")
 
 
-def _of_contacts(counts: Mapping[str, int], contacts: int, masses: int) -> float:
+def _contact_bytes(counts: Mapping[str, int], contacts: int, masses: int) -> float:
     """Bytes of the results of every contact and mass in the cells of a general system."""
     per_cell = 28.0 + 8.0 * 10.0 * contacts + 16.0 * (contacts + masses)
     return per_cell * counts["mu"] * counts["r"] * counts["beta"]

@@ -50,7 +50,7 @@ _EMPTY: dict[str, np.ndarray] = {
 class Plan:
     """Open cells of a map: in each row (mu, r), those with indices low to high - 1 in beta."""
 
-    low: np.ndarray  # (n_mu * n_r,) first open cell first open cell
+    low: np.ndarray  # (n_mu * n_r,) first open cell
     high: np.ndarray
     rows: np.ndarray  # the rows that have open cells
     ends: np.ndarray  # cumulative number of open cells of these rows

@@ -27,7 +27,7 @@ def reduction_check(
         if finer is None:
             return {}
         mu = one_mu(axes["mu"])
-        changes = boundary_changes(system, finer, axes["r"], mu).words()
+        changes = boundary_changes(system, finer, axes["r"], mu).describe()
         changed, cells = regime_changes(system, finer, axes, mu, solver, threads, watch)
     except InputError as error:
         return {"reduction_check": not_compared(error)}

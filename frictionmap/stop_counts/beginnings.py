@@ -48,7 +48,7 @@ def begun(phases: Phases, orbits: list[Orbit], low: float, high: float) -> Place
     slack = _WIDER * (high - low)
     for near in (_events, _singularities):
         for sequence, unknowns in orbits:
-            for place in _solved(phases, sequence, unknowns, near(phases, sequence, unknowns)):
+            for place in _points(phases, sequence, unknowns, near(phases, sequence, unknowns)):
                 if low - slack <= place.unknowns[-1] <= high + slack and is_on_border(phases, place):
                     return place
     return None
@@ -62,7 +62,7 @@ def ends(phases: Phases, orbits: list[Orbit], low: float, high: float) -> list[P
     found: list[Place] = []
     for sequence, unknowns in orbits:
         near = _events(phases, sequence, unknowns) + _singularities(phases, sequence, unknowns)
-        places = [place for place in _solved(phases, sequence, unknowns, near) if _is_near(place, low, high)]
+        places = [place for place in _points(phases, sequence, unknowns, near) if _is_near(place, low, high)]
         places.sort(key=lambda place: abs(math.log(place.unknowns[-1] / low)))
         for above in (False, True):
             side = (place for place in places if (place.unknowns[-1] > low) == above)
@@ -79,13 +79,13 @@ def _events(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> list[Ma
 
 
 def _singularities(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> list[Margin]:
-    """Only mu > 1 has them."""
+    """Folds and period doublings, which need mu > 1."""
     if sequence.mu == 1.0 or sequence.half_periods > _SINGULAR or sequence.events > _SINGULAR_EVENTS:
         return []
     return [Margin(Condition(kind, 0), 0.0, 0.0) for kind in (FOLD, DOUBLING)]
 
 
-def _solved(phases: Phases, sequence: Sequence, unknowns: np.ndarray, near: list[Margin]) -> Iterator[Place]:
+def _points(phases: Phases, sequence: Sequence, unknowns: np.ndarray, near: list[Margin]) -> Iterator[Place]:
     for margin in near:
         yield from at_frequency(phases, sequence, unknowns, margin)
 

@@ -42,7 +42,7 @@ class Condition(NamedTuple):
 def residuals(
     phases: Phases, sequence: Sequence, condition: Condition | None, unknowns: np.ndarray
 ) -> np.ndarray:
-    """What an orbit on a border leaves of its equations, (B, k [+ 1 or 2]).
+    """Residuals of the equations of an orbit on a border, (B, k [+ 1 or 2]).
 
     unknowns : (B, k [+ 1] + 2): times of the events, of the condition, r, beta
     """

@@ -1,4 +1,4 @@
-"""How far an orbit is from what it says: minima of its slides, forces of its stops, ends of its slides."""
+"""Consistency margins of an orbit: minima of its slides, forces of its stops, ends of its slides."""
 
 import math
 from typing import NamedTuple
@@ -16,7 +16,7 @@ _PER_PERIOD, _LEAST = 24, 16
 #: a minimum is that may be below it in truth: the square of the distance of samples.
 _ZOOMED, _ZOOMS, _CLOSE = 17, 2, 0.07
 
-#: Relative violation below which an orbit is what it says: rounding, and the solved extreme of its border.
+#: Relative violation below which an orbit is consistent: rounding, and the solved extreme of its border.
 _ROUNDING = 1e-8
 
 
@@ -37,7 +37,7 @@ class Margin(NamedTuple):
 
 
 def _extent(sequence: Sequence, motion: Motion, piece: int) -> tuple[float, float]:
-    """Begin and end of a piece; the last one goes on as the first."""
+    """Begin and end of a piece; the last one continues as the first."""
     begin, end = float(motion.times[piece][0]), float(motion.times[piece + 1][0])
     if piece == sequence.events:
         end += float(motion.times[1][0]) - sequence.start
@@ -103,12 +103,12 @@ def margins(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> list[Ma
     found: list[Margin] = []
     for piece in range(1, sequence.events + 1):
         samples = sampled(phases, sequence, motion, piece)
-        found += _of_slide(samples) if sequence.senses[piece] else _of_stop(samples)
-    found += _of_ends(phases, sequence, motion)
+        found += _slide_margins(samples) if sequence.senses[piece] else _stop_margins(samples)
+    found += _end_margins(phases, sequence, motion)
     return sorted(found, key=lambda margin: abs(margin.value))
 
 
-def _of_slide(samples: Samples) -> list[Margin]:
+def _slide_margins(samples: Samples) -> list[Margin]:
     size = samples.values.max()
     return [
         Margin(Condition(GRAZE, samples.piece), float(samples.tau[k]), float(samples.values[k] / size))
@@ -116,7 +116,7 @@ def _of_slide(samples: Samples) -> list[Margin]:
     ]
 
 
-def _of_stop(samples: Samples) -> list[Margin]:
+def _stop_margins(samples: Samples) -> list[Margin]:
     return [
         Margin(
             Condition(SLIP, samples.piece, sign), float(samples.tau[k]), float(1.0 - sign * samples.values[k])
@@ -132,7 +132,7 @@ def _end_force(phases: Phases, sequence: Sequence, motion: Motion, k: int) -> fl
     return float(sequence.senses[k] * force / motion.beta[0])
 
 
-def _of_ends(phases: Phases, sequence: Sequence, motion: Motion) -> list[Margin]:
+def _end_margins(phases: Phases, sequence: Sequence, motion: Motion) -> list[Margin]:
     found = []
     for k in range(sequence.events):
         if sequence.senses[k]:

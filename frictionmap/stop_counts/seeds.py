@@ -76,11 +76,11 @@ def counts_at(source: Source, r: np.ndarray, beta: np.ndarray) -> np.ndarray:
 
 def seeds_of_map(source: Source, window: Window, r: np.ndarray, count: int) -> Seeds:
     """Brackets of all changes of the number of stops along beta in a map with `count` friction ratios."""
-    found = [_of_block(source, window, block, count) for block in np.array_split(r, _BLOCKS)]
+    found = [_block_seeds(source, window, block, count) for block in np.array_split(r, _BLOCKS)]
     return Seeds(*(np.concatenate(arrays) for arrays in zip(*found, strict=True)))
 
 
-def _of_block(source: Source, window: Window, r: np.ndarray, count: int) -> Seeds:
+def _block_seeds(source: Source, window: Window, r: np.ndarray, count: int) -> Seeds:
     """Brackets along beta in one block of frequencies; see `seeds_of_map`."""
     mu = np.array([source.mu])
     curves = find_curves(source.system, r, mu)

@@ -64,7 +64,7 @@ def _scales(unknowns: np.ndarray) -> np.ndarray:
     return scales
 
 
-def _linearised(
+def _linearise(
     phases: Phases, sequence: Sequence, condition: Condition | None, unknowns: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Residuals (n,) and their derivatives (n, unknowns), by central differences."""
@@ -83,7 +83,7 @@ def solve(
     unknowns, scales = guess.copy(), _scales(guess)
     for _ in range(_NEWTON):
         try:
-            values, slopes = _linearised(phases, sequence, condition, unknowns)
+            values, slopes = _linearise(phases, sequence, condition, unknowns)
             plane = fixed @ ((unknowns - guess) / scales)
             matrix = np.concatenate((slopes * scales, fixed))
             sizes = np.abs(matrix).max(axis=1)
@@ -251,12 +251,12 @@ class _Course(NamedTuple):
 def _begun(phases: Phases, begin: Place, direction: np.ndarray) -> _Course:
     """The course at the first point of a border."""
     place = centred(begin)
-    _, slopes = _linearised(phases, *place)
+    _, slopes = _linearise(phases, *place)
     along = _tangent(place, slopes, direction)
     return _Course(place, along, np.zeros(along.size), _side(phases, place, slopes))
 
 
-def _stepped(phases: Phases, course: _Course, step: float) -> _Course | None:
+def _step_along(phases: Phases, course: _Course, step: float) -> _Course | None:
     """The course at a length further on; None if there is no such point, or its orbit is not physical."""
     sequence, condition, last = course.place
     guess = course.ahead(step)
@@ -266,7 +266,7 @@ def _stepped(phases: Phases, course: _Course, step: float) -> _Course | None:
     if found is None or not is_on_border(phases, Place(sequence, condition, found)):
         return None
     place = centred(Place(sequence, condition, found))
-    _, slopes = _linearised(phases, *place)
+    _, slopes = _linearise(phases, *place)
     along = _tangent(place, slopes, np.log(found[-2:] / last[-2:]))
     bend = (along - course.along) / step if place.sequence is sequence else np.zeros(along.size)
     return _Course(place, along, bend, _side(phases, place, slopes))
@@ -280,8 +280,8 @@ def _follow(phases: Phases, begin: Place, direction: np.ndarray, window: Window)
     course, step = _begun(phases, begin, direction), _FIRST
     points, crawled = [_point(course)], 0
     while len(points) < _MOST and crawled < _CRAWLS:
-        ahead = _stepped(phases, course, step)
-        turned = 0.0 if ahead is None else _turned(points[-1], _point(ahead))
+        ahead = _step_along(phases, course, step)
+        turned = 0.0 if ahead is None else _turning(points[-1], _point(ahead))
         if ahead is None or (turned > _EXCEEDED * _TURNED and step > _SHORT):
             step *= 0.5
             if step < _SHORTEST:
@@ -301,7 +301,7 @@ def _follow(phases: Phases, begin: Place, direction: np.ndarray, window: Window)
     return points
 
 
-def _turned(first: np.ndarray, second: np.ndarray) -> float:
+def _turning(first: np.ndarray, second: np.ndarray) -> float:
     """Distance of two points times the sine of the angle between their tangents."""
     sine = first[2] * second[3] - first[3] * second[2]
     return float(np.hypot(*(second[:2] - first[:2])) * abs(sine))
@@ -316,7 +316,7 @@ def _vertical(phases: Phases, course: _Course, ahead: _Course, step: float) -> _
         middle = low[0] - low[1] * (high[0] - low[0]) / (high[1] - low[1])
         if not 0.0 < middle < step:
             return None
-        found = _stepped(phases, course, middle)
+        found = _step_along(phases, course, middle)
         if found is None:
             return None
         slope = float(found.along[-2])
@@ -345,13 +345,13 @@ def traced(phases: Phases, begin: Place, window: Window) -> np.ndarray:
     direction = _begun(phases, begin, np.array([1.0, 0.0])).along[-2:]
     forward = _follow(phases, begin, direction, window)
     if _closed(forward):
-        return _thinned(np.array(forward))
+        return _thin_out(np.array(forward))
     backward = _follow(phases, begin, -direction, window)
     turned = [point * [1.0, 1.0, -1.0, -1.0, 1.0] for point in backward[:0:-1]]
-    return _thinned(np.array([*turned, *forward]))
+    return _thin_out(np.array([*turned, *forward]))
 
 
-def _thinned(points: np.ndarray) -> np.ndarray:
+def _thin_out(points: np.ndarray) -> np.ndarray:
     """The same points without those that crowd, mostly where the last steps to an end were halved."""
     kept = [0]
     for k in range(1, len(points)):

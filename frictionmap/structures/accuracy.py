@@ -83,7 +83,7 @@ class Accuracy(NamedTuple):
         """The larger error."""
         return max(self.frequencies, self.compliances)
 
-    def words(self) -> str:
+    def describe(self) -> str:
         """Describe the errors in the range."""
         if not np.isfinite(self.frequencies):
             return "natural frequencies of the whole structure are missing"

@@ -103,7 +103,7 @@ class Reduction:
         )
         raise InputError(
             f"reduce: cannot keep the error below {self.asked.allow:g} in the range of r with "
-            f"{self.asked.modes} modes: {accuracy.words()}; {advice}"
+            f"{self.asked.modes} modes: {accuracy.describe()}; {advice}"
         )
 
 

@@ -31,8 +31,8 @@ class Change(NamedTuple):
     share: float
     r: float
 
-    def words(self) -> str:
-        """In words."""
+    def describe(self) -> str:
+        """State the change in per cent, and where it is."""
         if self.share < _LEAST_CHANGE:
             return f"by less than {100.0 * _LEAST_CHANGE:g} %"
         per_cent = 100.0 * self.share
@@ -50,12 +50,12 @@ class BoundaryChanges(NamedTuple):
     beta_lim: Change
     beta_stick: Change
 
-    def words(self) -> str:
-        """In words."""
+    def describe(self) -> str:
+        """State how much the boundaries change."""
         among = f"all {self.modes}" if self.modes == self.all_modes else f"{self.modes} of {self.all_modes}"
         return (
-            f"against {among} modes beta_lim changes {self.beta_lim.words()}, beta_stick "
-            f"{self.beta_stick.words()}"
+            f"against {among} modes beta_lim changes {self.beta_lim.describe()}, beta_stick "
+            f"{self.beta_stick.describe()}"
         )
 
 
@@ -112,7 +112,7 @@ def boundary_check(system: System, r: np.ndarray, mu: np.ndarray) -> dict[str, s
         finer = with_more_modes(system)
         if finer is None:
             return {}
-        return {"reduction_check": boundary_changes(system, finer, r, one_mu(mu)).words()}
+        return {"reduction_check": boundary_changes(system, finer, r, one_mu(mu)).describe()}
     except InputError as error:
         return {"reduction_check": not_compared(error)}
 

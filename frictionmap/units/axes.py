@@ -108,7 +108,7 @@ def _ladder(axis: Mapping[str, Any], name: str, kind: str, scales: Scales) -> La
     if math.isinf(rounded(stop)) or math.isinf(rounded(start)):
         raise InputError(f"{name} must be finite; got {checks.one_line(axis)}")
     if "num" in axis:
-        return _of_number(start, stop, axis, name)
+        return _spaced_by_number(start, stop, axis, name)
     if given["step"].value <= 0:
         raise InputError(f"{name}.step must be > 0; got {axis['step']!r}")
     step = given["step"].value / one
@@ -121,7 +121,7 @@ def _ladder(axis: Mapping[str, Any], name: str, kind: str, scales: Scales) -> La
     return Ladder(start, step, stop, steps + 1)
 
 
-def _of_number(start: Fraction, stop: Fraction, axis: Mapping[str, Any], name: str) -> Ladder:
+def _spaced_by_number(start: Fraction, stop: Fraction, axis: Mapping[str, Any], name: str) -> Ladder:
     """Make a range with a given number of values."""
     num = checks.whole(axis["num"], f"{name}.num", least=1, most=checks.MOST_CELLS)
     if num == 1 and stop > start:

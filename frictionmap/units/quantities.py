@@ -188,7 +188,7 @@ def _unit_of_array(values: Any, name: str, kind: str) -> str | None:
 def _converted(value: Any, name: str, kind: str) -> tuple[np.ndarray, str]:
     """Numbers of a quantity of another package, by its own conversion, and our unit that they are in."""
     own = _own_unit(value)
-    unit, asked = _asked(own, kind)
+    unit, asked = _foreign_unit(own, kind)
     try:
         if not asked:
             raise ValueError
@@ -199,7 +199,7 @@ def _converted(value: Any, name: str, kind: str) -> tuple[np.ndarray, str]:
     return np.asarray(found, dtype=float), unit
 
 
-def _asked(own: str, kind: str) -> tuple[str, str]:
+def _foreign_unit(own: str, kind: str) -> tuple[str, str]:
     """Unit, and its spelling for the other package; empty if it is no frequency."""
     if kind != "frequency":
         return units_in_si(kind), _ASKED[kind]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from frictionmap.design.extremes import brackets_of, joined, sharpened
+from frictionmap.design.extremes import brackets_of, joined, refine_maxima
 
 X = np.linspace(0.0, 1.0, 12)
 
@@ -43,7 +43,7 @@ def test_every_kind_of_maximum_is_found():
     functions = Counted()
     parts = [brackets_of(X, function(X)) for function in FUNCTIONS]
     inside = [np.flatnonzero((part.m > 0.0) & (part.m < 1.0)) for part in parts]
-    places, values = sharpened(
+    places, values = refine_maxima(
         functions,
         joined([type(part)(*(array[k] for array in part)) for part, k in zip(parts, inside, strict=True)]),
     )
@@ -56,8 +56,8 @@ def test_every_kind_of_maximum_is_found():
 def test_lower_maxima_of_a_group_are_left_rough():
     parts = [brackets_of(X, function(X)) for function in FUNCTIONS[:2]]
     alone, together = Counted(), Counted()
-    _, wanted = sharpened(alone, joined(parts))
-    _, found = sharpened(together, joined(parts), np.zeros(2, int))
+    _, wanted = refine_maxima(alone, joined(parts))
+    _, found = refine_maxima(together, joined(parts), np.zeros(2, int))
     assert found[0] == wanted[0]
     assert found[1] <= wanted[1] < wanted[0]
     assert together.places[1] < alone.places[1]

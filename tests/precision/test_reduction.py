@@ -127,7 +127,7 @@ def test_r_means_the_same_however_much_is_left():
         assert system == dataclasses.replace(system, frequency_scale=system.omega_1)
 
 
-def test_a_single_frequency_beside_a_resonance_is_compared():
+def test_a_single_frequency_near_a_resonance_is_compared():
     """1 % from one, where a range as narrow has nothing further off."""
     whole = fm.System(matrices=CHAIN, frequency_scale=1.0, **SYSTEM)
     r = np.array([1.01 * whole.modes.w[3]])
@@ -147,7 +147,7 @@ def test_a_single_frequency_beside_a_resonance_is_compared():
 
 
 @pytest.mark.parametrize("modes", [0, 8, 37])
-def test_the_effective_mass_of_the_contact_is_told(modes):
+def test_the_effective_mass_of_the_contact_is_reported(modes):
     """What friction that reverses feels at once: more with fewer modes, and exact with all."""
     system = reduced(modes=modes)
     told = system.accuracy(np.array([0.5])).contact_mass
@@ -194,7 +194,7 @@ def test_damping_matrices_are_reduced_alike():
     assert "from C = 0.003 M + 0.04 K" in by_numbers.describe()
 
 
-def test_too_few_modes_are_refused_and_enough_are_told(tmp_path, capsys):
+def test_too_few_modes_are_refused_and_a_sufficient_number_is_stated(tmp_path, capsys):
     keys = {"matrices": {name: matrix.tolist() for name, matrix in CHAIN.items()}, **SYSTEM}
     tree = {"system": {**keys, "reduce": {"modes": 3}}, "grid": {"r": [0.5, 6.0], "beta": [0.1]}}
     (tmp_path / "c.toml").write_text(to_toml(tree))
@@ -257,7 +257,7 @@ def test_a_dataset_names_the_degrees_of_freedom_of_the_file(tmp_path):
     np.testing.assert_array_equal(fm.boundaries(again, [0.4]).beta_lim, fm.boundaries(python, [0.4]).beta_lim)
 
 
-def test_a_store_goes_on_with_reduced_matrices(tmp_path, capsys):
+def test_a_store_resumes_with_reduced_matrices(tmp_path, capsys):
     pytest.importorskip("zarr")
     np.savez(tmp_path / "chain.npz", **CHAIN)
     keys = {"matrices": "chain.npz", **SYSTEM, "reduce": {"modes": 12}}
@@ -341,7 +341,7 @@ AXIS = np.linspace(0.3, 2.2, 45)
 
 
 @pytest.mark.parametrize(("modes", "factor"), [(4, 5.0), (6, 3.0), (10, 2.0)])
-def test_the_check_says_how_far_beta_lim_is_off(modes, factor):
+def test_the_check_states_the_error_of_beta_lim(modes, factor):
     """beta_lim is off by more than these factors from that of the whole structure, and the check says so."""
     system = of_chain(modes)
     found, true = (fm.boundaries(one, AXIS) for one in (system, WHOLE))
@@ -358,11 +358,11 @@ def test_the_check_says_how_far_beta_lim_is_off(modes, factor):
     words = found.attrs["reduction_check"]
     assert words == "against all 38 modes beta_lim changes by " + (
         f"up to {100.0 * changes.beta_lim.share:.0f} % (at r = {changes.beta_lim.r:.4g}), beta_stick "
-        f"{changes.beta_stick.words()}"
+        f"{changes.beta_stick.describe()}"
     )
 
 
-def test_the_check_says_which_regimes_change(tmp_path, capsys):
+def test_the_check_states_which_regimes_change(tmp_path, capsys):
     """The cells of the coarse map that change are those of the reduction and the whole structure."""
     beta = np.linspace(0.02, 1.0, 15)
     r = AXIS[::5]
@@ -399,7 +399,7 @@ def test_all_modes_have_none_to_be_compared_with():
     assert "against all 38 modes" in fm.boundaries(of_chain(0), [0.1]).attrs["reduction_check"]
 
 
-def test_of_many_modes_the_check_says_how_many_it_has_looked_at():
+def test_the_check_states_how_many_of_many_modes_it_compares():
     """100, or twice as many; 548 are left of the membrane without contact and load."""
     for modes, compared in ((0, 100), (60, 120)):
         system = reduced(membrane(), modes, contact_masses=[260], reduce={"keep": []})
@@ -430,7 +430,7 @@ def test_finer_reductions_keep_load_damping_and_scale():
             np.testing.assert_allclose(found, expected, rtol=1e-9)
 
 
-def test_a_comparison_that_cannot_be_made_says_why():
+def test_a_comparison_that_cannot_be_made_gives_the_reason():
     """Frequencies that one reduction just reaches are too low for the faster modes of the other."""
     system = of_chain(4)
     least = 1e-6 * system.modes.free.omega.max()

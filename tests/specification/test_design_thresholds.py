@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import frictionmap as fm
-from frictionmap.design.least_peak import in_words
+from frictionmap.design.least_peak import describe_cells
 from frictionmap.design.limits import Extreme
 from frictionmap.design.performance import Performance, Unclear
 from frictionmap.design.responses import Values
@@ -39,7 +39,7 @@ def test_a_range_of_friction_that_ends_before_the_threshold():
     ds = fm.design.least_peak(ONE, BAND, beta=[0.3, 0.9])
     assert (ds.beta.item(), str(ds.kind.values)) == (0.9, "at the bound")
     assert ds.peak.values[0] > 0.1
-    with pytest.raises(fm.InputError, match=r"beta must begin below 1, from which on .* is 0 .*; got 2$"):
+    with pytest.raises(fm.InputError, match=r"beta must begin below 1, at or above which .* is 0 .*; got 2$"):
         fm.design.least_peak(ONE, BAND, beta=[2.0, 3.0])
 
 
@@ -152,7 +152,10 @@ def test_an_irregular_cell_that_could_be_the_peak(seen, decides):
 
 def test_cells_in_words():
     one, two = Unclear(1, 0.8, 3.9, 5.0), Unclear(2, 0.8, np.nan, 5.0)
-    assert in_words(0.5, one) == (
+    assert describe_cells(0.5, one) == (
         "1 cell of the band has no periodic steady state at beta = 0.5 (r = 0.8: largest response seen 3.9)"
     )
-    assert in_words(0.5, two) == "2 cells of the band have no periodic steady state at beta = 0.5 (r = 0.8)"
+    assert (
+        describe_cells(0.5, two)
+        == "2 cells of the band have no periodic steady state at beta = 0.5 (r = 0.8)"
+    )

@@ -124,7 +124,7 @@ map good.toml --set 'solver.outputs=["regim"]'
 map good.toml --set 'axes.damping_ratio=[0,0.1]'
     axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity; got 'damping_ratio' (did you mean damping_ratios?)
 map good.toml --set 'axes={"mass_ratios[2]"=[1,2]}'
-    axes, at mass_ratios_2 = 1: axes.mass_ratios[2] must have an index <= 1, as mass_ratios; got 2
+    axes, at mass_ratios_2 = 1: unknown axis mass_ratios[2]: the system has 1 mass; use an index from 1 to 1
 map good.toml --set 'axes={damping_ratios=[]}'
     axes.damping_ratios must have at least one value; got none
 map good.toml --set 'axes={sample={file="none.csv"}}'
@@ -492,11 +492,11 @@ design question.toml --set design.question=margin --set design.beta=1
 design question.toml --set axes.damping_ratios=[0.1]
     design.question must be robust in a configuration with [axes], whose points are samples; got least-peak
 design question.toml --set design.question=robust --set axes.damping_ratios=[0.1] --set design.spread=0.1
-    design.spread must not be given beside [axes]: samples take its place; got 0.1
+    cannot use design.spread with [axes]: their samples take its place; leave one of them out; got 0.1
 design question.toml --set design.question=robust --set axes.damping_ratios=[0.1] --set design.quantile=1.5
     design.quantile must be <= 1; got 1.5
 design question.toml --set design.question=robust --set design.quantile=0.9
-    design.quantile must go with samples in [axes]; got 0.9 without them
+    cannot use design.quantile without [axes]: it is one over their samples; add [axes] or leave it out; got 0.9
 
 # Measured data: configurations
 identify none.toml

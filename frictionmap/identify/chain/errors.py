@@ -17,7 +17,7 @@ _SEARCHED = 2
 def fit_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, Problem, Measured]:
     """The least sum, weights of amplitudes and of lags by their residuals; the data have these weights."""
     found, task = fit_chain(data, known)
-    if not _of_both_kinds(data):
+    if not _has_both_kinds(data):
         return found, task, data
     for _ in range(ROUNDS):
         weighed = _weighed(data, task, found.best, root_mean_square)
@@ -35,7 +35,7 @@ def fit_robust_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, P
     """Fit with errors from the residuals, giving little weight to outliers."""
     found, task = fit_chain(data, known)
     for round_ in range(ROUNDS):
-        weighed = _weighed(data, task, found.best, usual_size) if _of_both_kinds(data) else data
+        weighed = _weighed(data, task, found.best, usual_size) if _has_both_kinds(data) else data
         plain = problem(weighed, known)
         residual, slopes = plain.residuals(found.best.values)
         usual = usual_size(residual, residual.size - np.linalg.matrix_rank(slopes[:, plain.free]))
@@ -67,5 +67,5 @@ def _weighed(data: Measured, task: Problem, best: Solution, size: Callable[..., 
     return data._replace(sigma=sizes[kind] / size(residual, float(freedom.sum())))
 
 
-def _of_both_kinds(data: Measured) -> bool:
+def _has_both_kinds(data: Measured) -> bool:
     return bool(data.is_phase.any() and not data.is_phase.all())

@@ -54,7 +54,7 @@ def chain_estimates(
     ds = estimates(
         meanings, units, natural_solution._replace(residual=residual), wider, fitted, data.value, "1", sigma
     )
-    return ds.assign(_of_samples(data))
+    return ds.assign(_sample_variables(data))
 
 
 def _transformed(
@@ -88,7 +88,7 @@ def _transformed(
     )
 
 
-def _of_samples(data: Measured) -> dict[str, xr.Variable]:
+def _sample_variables(data: Measured) -> dict[str, xr.Variable]:
     quantity = {
         "long_name": "what was measured",
         "flag_values": np.arange(len(QUANTITIES), dtype=np.int8),

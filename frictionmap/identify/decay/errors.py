@@ -22,9 +22,9 @@ _ENOUGH = 2
 def decay_errors(found: Search) -> Errors:
     """Errors of the named parameters: intervals of all fits, the rest of the best one."""
     noise = _coloured(found.record, found.fits[0])
-    each = [_of_one(found.record, fit, noise) for fit in found.fits]
+    each = [_fit_errors(found.record, fit, noise) for fit in found.fits]
     if found.doubted is not None:
-        each += [_of_one(found.doubted, fit, noise) for fit in found.also]
+        each += [_fit_errors(found.doubted, fit, noise) for fit in found.also]
     lower = np.min([one.lower for one in each], axis=0)
     upper = np.max([one.upper for one in each], axis=0)
     return each[0]._replace(lower=lower, upper=upper)
@@ -39,7 +39,7 @@ def decay_solution(record: Record, fit: DecayFit) -> Solution:
     return Solution(values[:named], residual, slopes[:, :named], fit.solution.at_bound[:named])
 
 
-def _of_one(record: Record, fit: DecayFit, coloured: Coloured | None) -> Errors:
+def _fit_errors(record: Record, fit: DecayFit, coloured: Coloured | None) -> Errors:
     """Errors of one fit; the variance is that of a sample with its full weight."""
     solution, freedom = fit.solution, freedom_of(record)
     residual = fit.plain.residuals(solution.values)[0]

@@ -10,7 +10,7 @@ from ..statistics.least_squares import Problem, Solution, minimise
 from ..statistics.robust import effective_variance
 from .motion import PARAMETERS, Decay, amplitudes, half_period, in_record, is_possible
 from .problem import Record, plain_problem, problem, weighted_problem
-from .starts import improving, starts
+from .starts import for_refining, starts
 
 #: Sums of squares that differ by less variances of a sample are alike: three standard errors.
 _AS_GOOD = 9.0
@@ -56,7 +56,7 @@ def fit_decay(record: Record, points: TurningPoints) -> list[DecayFit]:
 
     It has the least sum, if possible of those in which friction would not have held the mass before.
     """
-    some = improving(record)
+    some = for_refining(record)
     least = reference = np.inf
     allowed = 0.0
     fits: list[DecayFit] = []
@@ -75,7 +75,7 @@ def fit_decay(record: Record, points: TurningPoints) -> list[DecayFit]:
     return [best, *(fit for fit in alike[1:] if fit.possible and _same_release(fit, best))]
 
 
-def refitted(record: Record, fit: DecayFit) -> DecayFit:
+def refit(record: Record, fit: DecayFit) -> DecayFit:
     """A fit of a record that has further terms of a wander, with the same number of half cycles."""
     values = np.zeros(record.free.size)
     values[: fit.solution.values.size] = fit.solution.values

@@ -37,7 +37,7 @@ class Start(NamedTuple):
 
     n: int  # half cycles before rest
     values: np.ndarray  # shape (unknowns,)
-    sum: float  # of squares, of the samples of `improving`
+    sum: float  # of squares, of the samples of `for_refining`
     end: float  # of the record, s
 
     @property
@@ -55,7 +55,7 @@ class _Release(NamedTuple):
     seen: int  # turning points after it up to the last one that was found
 
 
-def improving(record: Record) -> Record:
+def for_refining(record: Record) -> Record:
     """The samples by which starts are improved."""
     return record.thinned(_IMPROVED)
 
@@ -66,7 +66,7 @@ def starts(record: Record, points: TurningPoints) -> list[Start]:
     found = [
         start
         for release in _releases(record.time, points, half)
-        for start in _of_release(record, release, half)
+        for start in _starts_after_release(record, release, half)
     ]
     different: list[Start] = []
     for start in sorted(found, key=lambda start: start.sum):
@@ -103,9 +103,9 @@ def _releases(time: np.ndarray, points: TurningPoints, half: float) -> list[_Rel
     return [_Release(first - k * half, up * (-1.0) ** k, last + k) for k in range(earliest + 1)]
 
 
-def _of_release(record: Record, release: _Release, half: float) -> list[Start]:
+def _starts_after_release(record: Record, release: _Release, half: float) -> list[Start]:
     """The best start for each number of half cycles after a release."""
-    compared, improved = record.thinned(_COMPARED), improving(record)
+    compared, improved = record.thinned(_COMPARED), for_refining(record)
     most = int((record.time[-1] - record.known.get("t0", release.t0)) / half)
     guesses = _guesses(record, release, half)
     found = [_best_start(compared, improved, most + 2, guesses)]  # not at rest in the record
@@ -134,11 +134,11 @@ def _guesses(record: Record, release: _Release, half: float) -> list[np.ndarray]
 
 def _best_start(compared: Record, improved: Record, n: int, guesses: list[np.ndarray]) -> Start:
     """The guess with the least sum, improved."""
-    solved = [_solved(compared, n, guess) for guess in guesses]
-    return _improved(improved, n, min(solved, key=lambda found: found[0])[1])
+    solved = [_solve_linear_part(compared, n, guess) for guess in guesses]
+    return _refine_start(improved, n, min(solved, key=lambda found: found[0])[1])
 
 
-def _solved(record: Record, n: int, guess: np.ndarray) -> tuple[float, np.ndarray]:
+def _solve_linear_part(record: Record, n: int, guess: np.ndarray) -> tuple[float, np.ndarray]:
     """Sum and unknowns of the least squares over those that the motion is linear in."""
     values = guess.copy()
     for index, name in enumerate(record.names):
@@ -153,7 +153,7 @@ def _solved(record: Record, n: int, guess: np.ndarray) -> tuple[float, np.ndarra
     return float(residual @ residual), values
 
 
-def _improved(record: Record, n: int, values: np.ndarray) -> Start:
+def _refine_start(record: Record, n: int, values: np.ndarray) -> Start:
     """A start after steps of Levenberg and Marquardt; bounds from below are not heeded."""
     task = problem(record, n, values)
     residual, slopes = task.residuals(values)

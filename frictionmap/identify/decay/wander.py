@@ -14,7 +14,7 @@ from scipy.special import chdtrc
 
 from ..signals.turning_points import TurningPoints
 from ..statistics.correlation import long_inflation
-from .fit import DecayFit, fit_decay, refitted, rounding_variance
+from .fit import DecayFit, fit_decay, refit, rounding_variance
 from .problem import DRIFT, Record, problem
 
 #: Terms for each cycle of the decay: they follow what is slower than a quarter of its frequency.
@@ -68,7 +68,7 @@ def search(record: Record, points: TurningPoints) -> Search:
     if record.terms or wander.chance >= _NOT_EXCLUDED:
         return Search(record, fits, None, [])
     doubted = record._replace(wander=wander.basis)
-    return Search(record, fits, doubted, [refitted(doubted, fit) for fit in fits])
+    return Search(record, fits, doubted, [refit(doubted, fit) for fit in fits])
 
 
 def _wander(record: Record, fit: DecayFit) -> _Wander:

@@ -117,10 +117,10 @@ def joint(
     ]
     fit = fit_jointly(parts, held)
     found = _errors(fit)
-    ds = _dataset(fit, found, unit).assign(_of_parts(fit, found, unit, stiffness, loss))
+    ds = _dataset(fit, found, unit).assign(_part_variables(fit, found, unit, stiffness, loss))
     ds.attrs["title"] = "Several measurements"
     ds.attrs["config"] = system_text(one_mass(contact, damping_reference))
-    ds.attrs["warnings"] = "; ".join([*_of_data(fit, unit, loss), *_of_fit(fit, found)])
+    ds.attrs["warnings"] = "; ".join([*_data_warnings(fit, unit, loss), *_fit_warnings(fit, found)])
     return ds
 
 
@@ -250,7 +250,7 @@ def _residual(fit: JointFit, k: int) -> np.ndarray:
     return fitted + part.fit.samples.slow @ values[len(OF_RECORD) :] - part.data
 
 
-def _of_parts(
+def _part_variables(
     fit: JointFit, found: Errors, unit: str, stiffness: float | None, loss: str
 ) -> dict[str, xr.Variable]:
     """Further results of each part."""
@@ -320,7 +320,7 @@ def _inseparable(fit: JointFit, found: Errors, names: list[str]) -> list[str]:
     return [names[k] for k in (F_N, ZETA, MU, *vague) if any(k in pair for pair in pairs)]
 
 
-def _of_data(fit: JointFit, unit: str, loss: str) -> list[str]:
+def _data_warnings(fit: JointFit, unit: str, loss: str) -> list[str]:
     """Warnings about each part."""
     words = []
     for part in fit.parts:
@@ -334,7 +334,7 @@ def _of_data(fit: JointFit, unit: str, loss: str) -> list[str]:
     return words
 
 
-def _of_fit(fit: JointFit, found: Errors) -> list[str]:
+def _fit_warnings(fit: JointFit, found: Errors) -> list[str]:
     """Warnings about the estimates."""
     words = [
         f"{part.label}: the model does not explain the record down to its noise: at the harmonics of the "

@@ -31,12 +31,12 @@ _LOADS = {"base": ("base", "motion"), "force": ("force", "force")}
 _ERRORS = {"sigma_phase": "angle", "sigma_amplitude": "ratio"}
 
 
-def _forced(rig: Rig, table: Table) -> xr.Dataset:
+def _fit_forced(rig: Rig, table: Table) -> xr.Dataset:
     if not rig.system:
         raise InputError("the configuration must have a table [system] for forced responses; got none")
     system = read_system(rig.system, rig.files[0].parent)
     _check_load(system, rig, table)
-    wanted = _wanted(system, rig, table)
+    wanted = _used_quantities(system, rig, table)
     names = {role: name for role, name in rig.columns.items() if role != "set"}
     picked = pick_columns(table, wanted, names, rig.missing)
     for role, column in picked.columns.items():
@@ -79,7 +79,7 @@ def _check_load(system: System, rig: Rig, table: Table) -> None:
             )
 
 
-def _wanted(system: System, rig: Rig, table: Table) -> dict[str, str]:
+def _used_quantities(system: System, rig: Rig, table: Table) -> dict[str, str]:
     """Quantities of the columns that are used."""
     roles = _roles_by_use(system)
     load = _LOADS[system.excitation or "force"]
@@ -248,7 +248,7 @@ def _sets(rig: Rig, table: Table, rows: np.ndarray) -> list[object] | None:
 
 
 FORCED = Kind(
-    _forced,
+    _fit_forced,
     PARAMETERS,
     known=("stiffness",),
     data=("use", "sigma_phase_deg", "sigma_amplitude", "unreachable"),

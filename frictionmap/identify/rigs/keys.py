@@ -183,11 +183,11 @@ def rig_schema() -> dict[str, Any]:
         "type": "object",
         "properties": {"data": either({"type": "object", "required": ["kind", "file"]}, {"type": "array"})},
         "required": ["data"],
-        "oneOf": [*(_of_kind(kind) for kind in KINDS), _of_several()],
+        "oneOf": [*(_kind_schema(kind) for kind in KINDS), _several_measurements()],
     }
 
 
-def _of_several() -> dict[str, Any]:
+def _several_measurements() -> dict[str, Any]:
     """Several measurements, tables [[data]]."""
     named = {key.name: key for key in (*_DATA, _LABEL)}
     data = table(described(tuple(named[name] for name in DATA_KEYS)), ("kind", "file"))
@@ -203,7 +203,7 @@ def _of_several() -> dict[str, Any]:
     return {**table({**described(KEYS[""]), **tables}), "title": JOINT_NAME}
 
 
-def _of_kind(kind: str) -> dict[str, Any]:
+def _kind_schema(kind: str) -> dict[str, Any]:
     keys = rig_keys(kind)
     sections = {name: keyed_table(name, keys[name], TABLES[name]) for name in keys if name}
     sections["data"]["properties"]["kind"] = {"description": "what was measured", "const": kind}

@@ -50,7 +50,7 @@ def _record(rig: Rig, table: Table) -> xr.Dataset:
     except InputError as error:
         names = f"columns {time.name}, {base.name} and {x.name}"
         raise InputError(f"file {rig.file}, {names}: {error}") from None
-    remarks = _of_integration((base, x), found)
+    remarks = _integration_warnings((base, x), found)
     ds.attrs["warnings"] = "; ".join(filter(None, (*remarks, ds.attrs["warnings"])))
     return with_remarks(ds, table, picked)
 
@@ -67,7 +67,7 @@ def _displaced(
     )  # fmt: skip
 
 
-def _of_integration(columns: tuple[Column, Column], found: Displacements) -> list[str]:
+def _integration_warnings(columns: tuple[Column, Column], found: Displacements) -> list[str]:
     """Warnings about displacements obtained by integration."""
     words = []
     for column, noise in zip(columns, found.noise, strict=True):

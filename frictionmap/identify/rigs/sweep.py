@@ -23,7 +23,7 @@ _MEASURES = {"amplitude_ratio": "ratio", "phase_lag": "angle"}
 
 def _sweep(rig: Rig, table: Table) -> xr.Dataset:
     masses = _checked_system(rig)
-    picked = pick_columns(table, _wanted(rig, table, masses), rig.columns, rig.missing)
+    picked = pick_columns(table, _used_quantities(rig, table, masses), rig.columns, rig.missing)
     for role, column in picked.columns.items():
         if not role.startswith("phase_lag"):
             check_positive(table, column, picked.rows)
@@ -42,7 +42,7 @@ def _sweep(rig: Rig, table: Table) -> xr.Dataset:
     return with_remarks(ds, table, picked)
 
 
-def _wanted(rig: Rig, table: Table, masses: int) -> dict[str, str]:
+def _used_quantities(rig: Rig, table: Table, masses: int) -> dict[str, str]:
     """Quantities of the columns in the file; amplitudes of one mass are required."""
     measures = {
         f"{role}_{mass}": what for mass in range(1, MOST_MASSES + 1) for role, what in _MEASURES.items()

@@ -16,25 +16,25 @@ from ...errors import InputError
 from ..statistics.orthonormal import orthonormal
 from .noise import noise_levels, slow_waves, wanders
 
-#: Harmonics, fewer where there are not this many samples a cycle of the highest one.
+#: Harmonics, fewer where the highest one would have fewer samples per cycle than this.
 _HARMONICS = 9
 SAMPLES_OF_HIGHEST = 2.5
 
 #: Cycles that a record must have.
 _LEAST_CYCLES = 2.0
 
-#: Samples a cycle that are needed.
+#: Least number of samples per cycle.
 _LEAST_SAMPLES = 8
 
 #: Number of values over the main lobe by which the spectrum is refined.
 _REFINED = 17
 
-#: Samples in all, and in a cycle, of which the search makes use.
+#: Samples that the search uses, in total and per cycle.
 _SAMPLES = 4000
-_SAMPLES_A_CYCLE = 16
+_SAMPLES_PER_CYCLE = 16
 
-#: Deviations from which a sample is an outlier; number of fits in which outliers are limited.
-_OUTLIER, _TAMED = 3.0, 5
+#: Standard deviations beyond which a sample is an outlier; number of fits in which outliers are limited.
+_OUTLIER, _ROUNDS = 3.0, 5
 
 #: Median of the modulus of a normal deviate, in standard deviations.
 _MEDIAN = 0.6744897501960817
@@ -107,15 +107,16 @@ def phasors_of(time: np.ndarray, channels: np.ndarray) -> Phasors:
 def robust_phasors(time: np.ndarray, channels: np.ndarray) -> tuple[Phasors, np.ndarray]:
     """Fit harmonics to channels with outliers; also return the channels with outliers limited.
 
-    A sample farther from the harmonics than some deviations of the others counts as one at that distance.
+    A sample farther from the harmonics than three standard deviations is moved to that distance.
     """
-    tamed = channels
-    for _ in range(_TAMED):
-        found = phasors_of(time, tamed)
-        beside = channels - (tamed - found.residual)
-        reach = _OUTLIER * scatter_of(beside)
-        tamed = tamed - found.residual + np.clip(beside, -reach, reach)
-    return phasors_of(time, tamed), tamed
+    winsorised = channels
+    for _ in range(_ROUNDS):
+        found = phasors_of(time, winsorised)
+        model = winsorised - found.residual
+        residual = channels - model
+        limit = _OUTLIER * scatter_of(residual)
+        winsorised = model + np.clip(residual, -limit, limit)
+    return phasors_of(time, winsorised), winsorised
 
 
 def harmonics_of(time: np.ndarray, channels: np.ndarray, robust: bool) -> tuple[Phasors, np.ndarray]:
@@ -227,8 +228,8 @@ def _checked_harmonics(t: np.ndarray, frequency: float) -> int:
 
 def _stride(t: np.ndarray, frequency: float) -> int:
     """Stride of samples sufficient for initial values: enough per cycle, and enough in all."""
-    a_cycle = 1.0 / (float(np.median(np.diff(t))) * frequency)
-    return max(1, min(t.size // _SAMPLES, int(a_cycle / _SAMPLES_A_CYCLE)))
+    per_cycle = 1.0 / (float(np.median(np.diff(t))) * frequency)
+    return max(1, min(t.size // _SAMPLES, int(per_cycle / _SAMPLES_PER_CYCLE)))
 
 
 def _refine(

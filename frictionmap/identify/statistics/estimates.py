@@ -42,7 +42,7 @@ def usable_errors(found: Errors, index: int, bound: float, fitted: bool) -> np.n
     return result
 
 
-def _of_parameters(values: np.ndarray, words: str) -> xr.Variable:
+def _parameter_variable(values: np.ndarray, words: str) -> xr.Variable:
     return xr.Variable("parameter", values, {"long_name": words, "comment": "each in its own unit"})
 
 
@@ -53,13 +53,13 @@ def _parameter_variables(
     held, bound = (~free).astype(np.int8), solution.at_bound.astype(np.int8)
     of_errors = {"long_name": "correlation of errors", "units": "1"}
     return {
-        "estimate": _of_parameters(solution.values, "estimate"),
-        "standard_error": _of_parameters(
+        "estimate": _parameter_variable(solution.values, "estimate"),
+        "standard_error": _parameter_variable(
             errors.standard_error,
             "standard error; 0 for held parameters, NaN where only the interval can be used",
         ),
-        "lower": _of_parameters(errors.lower, "lower end of the 95 % interval"),
-        "upper": _of_parameters(errors.upper, "upper end of the 95 % interval"),
+        "lower": _parameter_variable(errors.lower, "lower end of the 95 % interval"),
+        "upper": _parameter_variable(errors.upper, "upper end of the 95 % interval"),
         "unit": xr.Variable("parameter", np.array(units), {"long_name": "unit"}),
         "known": xr.Variable("parameter", held, {"long_name": "1 if held, not fitted"}),
         "at_bound": xr.Variable("parameter", bound, {"long_name": "1 if on a bound of what is possible"}),

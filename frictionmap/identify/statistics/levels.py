@@ -1,18 +1,17 @@
-"""Levels of statistics that all fits share: what is beyond chance, and when an estimate has settled."""
+"""Levels shared by all fits: significance, correlation, convergence and misfit."""
 
-#: Values so many standard errors from zero are no chance: what is estimated has been found.
+#: Significance: an estimate at least this many standard errors from zero differs from zero.
 FOUND = 3.0
 
-#: What chance makes more rarely than this is beyond the errors that are given, or no white noise.
+#: Significance of tests: below this probability the errors given are too small, or the noise is not white.
 CHANCE = 1e-3
 
 #: Beyond this correlation two estimates can hardly be separated.
 CORRELATED = 0.95
 
-#: Errors from residuals are found again and again until they change by less than this share, and so often at
-#: most.
+#: Errors from residuals are iterated until they change by less than this share; largest number of rounds.
 SETTLED, ROUNDS = 1e-3, 20
 
-#: Residuals so many times as large as the noise, and beyond this share of the motion, are not those of the
-#: motion that was to be fitted.  Higher harmonics, and friction that is not constant, leave far less.
+#: Residuals larger than this multiple of the noise and than this share of the motion show that the model does
+#: not describe the data.  Higher harmonics, and friction that is not constant, leave far less.
 MISFIT, MISFIT_SHARE = 10.0, 0.1

@@ -18,7 +18,7 @@ _NORMAL_MEDIAN = 0.6745
 #: Mean of t^2/(1 + t^2) of a normal deviate t: 1 - sqrt(pi/2) e^(1/2) erfc(1/sqrt(2)).
 _NORMAL_INFLUENCE = 1.0 - float(np.sqrt(0.5 * np.pi) * erfcx(np.sqrt(0.5)))
 
-#: The standard deviation is found to this share, in so many steps at most.
+#: Relative change at which the standard deviation has settled; largest number of steps.
 _SETTLED, _STEPS = 1e-6, 200
 
 #: If the leverage of a sample is closer to 1 than this, its residual contains no information about its error.
@@ -26,7 +26,7 @@ _UNSEEN = 1e-6
 
 
 def softened(problem: Problem, scale: float) -> Problem:
-    """The problem with little weight of residuals beyond `scale` > 0."""
+    """The problem with residuals beyond `scale` > 0 weighted down."""
 
     def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         plain, slopes = problem.residuals(values)
@@ -66,7 +66,7 @@ def _variance(plain: np.ndarray, unknowns: int, scale: float) -> float:
 
 
 def jackknife_growth(problem: Problem, best: Solution, scale: float) -> np.ndarray:
-    """By what errors are larger as each sample's own influence shows them, >= 1, shape (parameters,).
+    """HC3 inflation of the standard errors, >= 1, shape (parameters,).
 
     With A = (J^T diag(psi') J)^-1 and leverages h the covariance A (sum psi_i^2/(1 - h_i)^2 J_i J_i^T) A is
     nearly that by which estimates vary when one sample after another is left out (MacKinnon and White,

@@ -33,7 +33,7 @@ def read_uff(path: Path) -> Columns:
         raise InputError(f"cannot read {path}: it has no set 58; export a record or a frequency response")
     columns: Columns = {}
     for one in sets:
-        for name, values in _of_set(one):
+        for name, values in _columns_of_set_58(one):
             if name in columns and not np.array_equal(columns[name], values):
                 raise InputError(
                     f"cannot read {path}: its sets 58 have different columns {name}; export one of them"
@@ -42,7 +42,7 @@ def read_uff(path: Path) -> Columns:
     return columns
 
 
-def _of_set(one: dict[str, Any]) -> Iterator[tuple[str, np.ndarray]]:
+def _columns_of_set_58(one: dict[str, Any]) -> Iterator[tuple[str, np.ndarray]]:
     """Columns of a set 58."""
     axis = {_TIME: "time_s", _FREQUENCY: "frequency_Hz"}.get(one["abscissa_spec_data_type"])
     kinds = one["ordinate_spec_data_type"], one["orddenom_spec_data_type"]

@@ -94,7 +94,7 @@ def _stop(family: Family, names: tuple[str, str] | None, **chosen: int) -> Stop 
     return begin, end
 
 
-def _of_mass(family: Family, quantity: str, index: int) -> MotionColumn | None:
+def _mass_column(family: Family, quantity: str, index: int) -> MotionColumn | None:
     names = NAMES[quantity]
     own = _pair(family, names.mass, dof=index)
     if own is None:
@@ -115,13 +115,13 @@ def _of_mass(family: Family, quantity: str, index: int) -> MotionColumn | None:
     )
 
 
-def _of_contacts(family: Family, quantity: str) -> list[MotionColumn]:
+def _contact_columns(family: Family, quantity: str) -> list[MotionColumn]:
     """A column for each contact of which the dataset has an amplitude."""
     name = NAMES[quantity].contact[0]
-    return [_of_contact(one, quantity) for one in family.contacts(name)] if name in family.cells else []
+    return [_contact_column(one, quantity) for one in family.contacts(name)] if name in family.cells else []
 
 
-def _of_contact(family: Family, quantity: str) -> MotionColumn:
+def _contact_column(family: Family, quantity: str) -> MotionColumn:
     own = _pair(family, NAMES[quantity].contact)
     assert own is not None
     stop = _stop(family, NAMES[quantity].contact_stop)
@@ -139,10 +139,10 @@ def _alike(one: np.ndarray, other: np.ndarray) -> bool:
 def _motions(family: Family, quantity: str) -> list[MotionColumn]:
     """The masses, and the contacts that no mass moves with; or the contacts alone."""
     if quantity == "contact":
-        return _of_contacts(family, "amplitude")
-    masses = [_of_mass(family, quantity, index) for index in range(family.cells.sizes.get("dof", 0))]
+        return _contact_columns(family, "amplitude")
+    masses = [_mass_column(family, quantity, index) for index in range(family.cells.sizes.get("dof", 0))]
     found = [mass for mass in masses if mass is not None]
-    contacts = [] if current().mass else _of_contacts(family, quantity)
+    contacts = [] if current().mass else _contact_columns(family, quantity)
     return found + [
         contact for contact in contacts if not any(_alike(mass.size, contact.size) for mass in found)
     ]

@@ -49,12 +49,12 @@ def _sets(ds: xr.Dataset) -> list[ResponseSet]:
     result = []
     for label, colour in zip(names, sequence(len(names)), strict=True):
         chosen = labels == label
-        own = _of_set(ds, label, float(beta[chosen].mean()))
+        own = _set_friction(ds, label, float(beta[chosen].mean()))
         result.append(ResponseSet(f"set {label}: β = {own:.3g}", colour, own, chosen))
     return result
 
 
-def _of_set(ds: xr.Dataset, label: str, mean: float) -> float:
+def _set_friction(ds: xr.Dataset, label: str, mean: float) -> float:
     """beta of a set at the mean of its loads."""
     return fitted(ds, f"beta_{label}", fitted(ds, "beta", mean))
 

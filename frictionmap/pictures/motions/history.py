@@ -83,7 +83,7 @@ def _label_beside(ax: Axes, places: np.ndarray, texts: Sequence[str], colours: S
         )  # fmt: skip
 
 
-def _in_sight(ax: Axes, values: np.ndarray) -> None:
+def _set_limits_around(ax: Axes, values: np.ndarray) -> None:
     """Set the limits of a vertical axis around values; a constant appears as a level line, not as its
     rounding error.
     """
@@ -119,7 +119,7 @@ def _draw_load(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
     if abs(float(load.max()) - 1.0) <= _ROUNDING and abs(float(load.min()) + 1.0) <= _ROUNDING:
         ax.set_ylim(-1.25, 1.25)
     else:
-        _in_sight(ax, load)
+        _set_limits_around(ax, load)
     ax.set_ylabel(load_of(ds) or "load / $P$")
 
 
@@ -127,7 +127,7 @@ def _draw_contacts(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence
     """Draw the motion in every contact, with the starts of its stops."""
     for trace in traces:
         ax.plot(turns, trace.z, color=trace.colour)
-    _in_sight(ax, np.concatenate([trace.z for trace in traces]))
+    _set_limits_around(ax, np.concatenate([trace.z for trace in traces]))
     ax.set_ylabel("contact\n" r"$z$ / $(P/k_1)$")
     on_the_right(ax, ds, "length", "$z$")
     handles: list[Handle] = [
@@ -167,7 +167,7 @@ def _draw_masses(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
     colours = [LINES[k % len(LINES)] for k in range(len(x))]
     for place, colour in zip(x, colours, strict=True):
         ax.plot(turns, place, color=colour, linewidth=1.2)
-    _in_sight(ax, x)
+    _set_limits_around(ax, x)
     on_the_right(ax, ds, "length", "$x$")
     ax.set_ylabel("masses\n" r"$x$ / $(P/k_1)$")
     labelled = np.unique(np.linspace(0, len(x) - 1, min(len(x), MOST_LABELS)).round().astype(int))
@@ -213,7 +213,7 @@ def _draw_friction(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence
         colours += [colour] * levels.size
         seen += [trace.friction, levels if factor is None else np.outer(levels, factor).ravel()]
     together = np.concatenate(seen)
-    _in_sight(ax, together[np.isfinite(together)])
+    _set_limits_around(ax, together[np.isfinite(together)])
     on_the_right(ax, ds, "force", "friction")
     _label_beside(ax, np.array(places), texts, colours)
     ax.set_ylabel("friction / $P$")

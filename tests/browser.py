@@ -90,7 +90,7 @@ def colours(page):
 
 
 def wanted(system, r, beta, mu, shape, **settings):
-    """Colours of a map of so many columns and rows over ranges of r and beta."""
+    """Colours of a map of columns x rows cells over ranges of r and beta."""
     middles = [
         np.linspace(low + half, high - half, count)
         for (low, high), count in zip((r, beta), shape, strict=True)

@@ -1,4 +1,4 @@
-"""What the program says to input that is at fault."""
+"""Messages of the program about invalid input."""
 
 from frictionmap.command_line.cli import main
 

@@ -131,7 +131,7 @@ def test_nothing_of_a_structure_can_stop_within_the_radius():
     ("beta", "place"),
     [(1.05, 0.01195), (1.2, -0.10899), (1.5, 0.36402)],
 )
-def test_where_a_moving_mass_sticks_for_good(beta, place):
+def test_where_a_moving_mass_sticks_permanently(beta, place):
     """r = 0.25, mu = 1, from a moving start: places found by marching event by event, five digits."""
     ds = fm.response(fm.System(), 0.25, beta, start="moving", skip="none", points=10)
     assert int(ds.regime) == 0
@@ -148,7 +148,7 @@ def test_where_a_moving_mass_sticks_for_good(beta, place):
     ],
 )  # fmt: skip
 def test_a_slide_ends_only_where_the_velocity_is_zero(steps, r, b, z, v, c, s):
-    """Undamped slides whose velocity dips to zero but for rounding: the closed form at the end found."""
+    """Undamped slides whose velocity dips to zero up to rounding: the closed form at the end found."""
     step = step_constants(r, 0.0, steps)
     acceleration = step.stiffness * (c - b - z)
     n, _, _, _ = slide(step, b, z, v * step.h, acceleration, c, s, 1e5, np.empty(MAX_TERMS))

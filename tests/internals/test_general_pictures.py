@@ -147,7 +147,7 @@ def test_a_chosen_contact_has_its_own_stops_and_name():
     np.testing.assert_array_equal(own.get_ydata(), [0.1, 0.2])
 
 
-def test_numbers_of_contacts_are_beside_classes_of_their_own():
+def test_contacts_have_classes_next_to_their_numbers():
     """A contact that is stuck while the other one moves has no number of stops, and is coloured as stuck."""
     axes = plot.plot_quantity(two_contacts(), "stops_per_cycle")
     images = [one for ax in axes[:2] for one in ax.get_children() if isinstance(one, QuantityImage)]
@@ -322,7 +322,7 @@ def test_the_load_is_that_of_the_file():
     assert mark.get_xdata() == pytest.approx(tau[np.argmax(expected)] / np.pi)
 
 
-def test_an_elastic_contact_has_its_loop_beside():
+def test_an_elastic_contact_has_its_loop_next_to_its_history():
     ds = fm.response(fm.System(contact_stiffness=3.0, damping_ratios=0.02), 0.8, 0.5)
     axes = plot_response(ds)
     assert [ax.get_title() for ax in axes] == ["", "", "", "hysteresis loop"]

@@ -33,7 +33,7 @@ print(digest.hexdigest())
 
 
 def test_answers_are_the_same_whatever_memory_is_full_of():
-    """glibc fills what is given back with the byte and what is asked for with its complement.
+    """glibc fills what is given back with the byte and what is allocated with its complement.
 
     As numbers these are small and negative, or large and positive.
     """

@@ -156,7 +156,7 @@ def test_the_regime_decides_before_the_stops():
     assert labels(one_mu(regime)) == expected
 
 
-def test_stops_alone_do_not_tell_stuck_from_unresolved():
+def test_stops_alone_do_not_distinguish_stuck_from_unresolved():
     assert labels(one_mu(stops=[0.0, np.nan])) == ["continuous", "stuck or unresolved"]
 
 
@@ -176,7 +176,7 @@ def test_classes_and_counts_do_not_depend_on_how_much_is_looked_at_at_once(monke
     assert classes.stops_range(found, stops, palette.NO_STOPS) == (np.inf, -np.inf)
 
 
-def test_legends_say_how_many():
+def test_legends_state_the_number_of_cells():
     assert classes.legend_label(palette.STUCK, 12345, np.inf, -np.inf) == "permanent sticking (12,345)"
     assert classes.legend_label(palette.MORE, 3, 5.0, 12.0) == "5 to 12 stops (3)"
     assert classes.legend_label(palette.MORE, 1, 7.0, 7.0) == "7 stops (1)"
@@ -412,7 +412,7 @@ def test_titles_break_into_lines_of_like_length():
     assert words.balanced("", 60) == ""
 
 
-def test_repeated_ratios_are_told_once():
+def test_repeated_ratios_are_abbreviated():
     system = "chain of 4 masses (1, 1, 1, 1), springs (1, 1, 1.5, 1); load (0, 0, 0.5, 0.5, 0.5)"
     told = words.system_words(xr.Dataset(attrs={"system": system}))
     assert told == "chain of 4 masses (4 × 1), springs (1, 1, 1.5, 1); load (0, 0, 3 × 0.5)"
@@ -427,7 +427,9 @@ EXCITATIONS = [
 
 
 @pytest.mark.parametrize(("system", "excitation", "label"), EXCITATIONS)
-def test_the_load_is_told_by_an_attribute_and_in_older_files_by_the_configuration(system, excitation, label):
+def test_the_load_is_read_from_an_attribute_and_in_older_files_from_the_configuration(
+    system, excitation, label
+):
     ds = fm.sweep(fm.System(**system), [0.3], [2.0])
     assert ds.attrs["excitation"] == excitation
     assert words.load_of(ds) == label
@@ -439,7 +441,7 @@ def test_the_load_is_told_by_an_attribute_and_in_older_files_by_the_configuratio
     assert words.moves_base(ds) is (excitation == "base")
 
 
-def test_a_file_that_tells_nothing_of_its_load_is_labelled_as_loaded_by_a_force():
+def test_a_file_without_its_load_is_labelled_as_loaded_by_a_force():
     ds = xr.Dataset(attrs={"system": "base motion"})
     assert words.load_of(ds) == "load / $P$"
     assert not words.moves_base(ds)

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.plain
 @pytest.mark.parametrize("contact", ["fixed-wall", "joined-base-wall"])
 @pytest.mark.parametrize("zeta", [0.0, 0.1, 1.0, 2.0])
 def test_small_map(contact, zeta):
-    """Every regime, every origin; what is known of each cell without integration holds."""
+    """Every regime, every origin; the regime proved without integration holds in each cell."""
     system = fm.System(contact=contact, damping_ratios=zeta)
     ds = fm.sweep(system, [0.0, 0.3, 0.7, 1.0, 2.0], [0.0, 0.1, 0.5, 0.9, 5.0], [1.0, 1.5], outputs=OUTPUTS)
     smooth = ds.sel(mu=1.0)

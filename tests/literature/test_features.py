@@ -92,7 +92,7 @@ def test_peak_amplitudes():
 
 
 def test_no_resonance_above():
-    """T 3.6.2: from beta = 1.06 on no sliding mass under joined base-wall motion moves more than the base.
+    """T 3.6.2: if beta >= 1.06 no sliding mass under joined base-wall motion moves more than the base.
 
     The largest amplitude falls through 1 at beta = 1.057, on the continuous part of the curve.
     """

@@ -58,7 +58,7 @@ def test_published_map_is_resolved(published):
     assert not bool(nan.any())
 
 
-def test_published_map_says_what_the_thesis_says(published):
+def test_published_map_agrees_with_the_thesis(published):
     """T 3.6.2: two stops predominate, more are rare; one stop only for mu > 1, around r = 1/2."""
     smooth, rough = published.sel(mu=1.0), published.sel(mu=1.5)
     stops = smooth.stops_per_cycle.values[smooth.regime.values == regimes.STICK_SLIP]

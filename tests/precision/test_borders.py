@@ -76,7 +76,7 @@ def borders_of(number):
 
 
 @pytest.mark.parametrize("number", range(len(WINDOWS)))
-def test_cells_beside_borders_have_the_counts(number):
+def test_cells_next_to_borders_have_the_counts(number):
     """Points evenly along the borders, away from their ends, where two borders are next to each other."""
     system, ds = WINDOWS[number][0], borders_of(number)
     assert ds.sizes["border"] > 1

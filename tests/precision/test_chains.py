@@ -56,7 +56,7 @@ def test_slopes_are_those_of_the_response(n, base_damping):
 
 @pytest.mark.parametrize("n", [1, 2, 3, 5])
 def test_peaks_and_zeros_of_the_first_mass_give_the_chain_back(n):
-    """Zeros are the natural frequencies of what is left when mass 1 is held: masses 2 to n on spring 2."""
+    """Zeros are the natural frequencies of the rest when mass 1 is held: masses 2 to n on spring 2."""
     masses, springs = chain(n)
     zeros = np.zeros(0)
     if n > 1:
@@ -85,7 +85,7 @@ def test_exact_amplitudes_give_the_chain_back(n, measured):
 
 
 @pytest.mark.parametrize(("n", "damping"), [(1, "ground"), (2, "base"), (3, "ground"), (5, "base")])
-def test_lags_tell_the_damping(n, damping):
+def test_lags_determine_the_damping(n, damping):
     f = band(n, 40)
     X = responses(f, *chain(n), ZETA[:n], F_K1M1, damping == "base")
     which = sorted({1, (n + 1) // 2, n})
@@ -96,7 +96,7 @@ def test_lags_tell_the_damping(n, damping):
     np.testing.assert_allclose(found, ZETA[:n], rtol=1e-7)
 
 
-def test_two_masses_are_told_by_their_frequencies():
+def test_frequencies_determine_two_masses():
     f = band(2)
     X = responses(f, *chain(2), ZETA[:2], F_K1M1)[:, 1]
     ds = fm.identify.sweep(f, {2: np.abs(X)}, {2: -np.degrees(np.angle(X))}, known={"gamma": MASSES[1]})
@@ -190,14 +190,14 @@ def test_outliers_of_a_sweep_have_little_weight():
         ),
     ],
 )  # fmt: skip
-def test_what_a_mass_cannot_tell_is_named(n, mass, known, message):
+def test_parameters_that_a_mass_does_not_determine_are_named(n, mass, known, message):
     f = band(n)
     X = np.abs(responses(f, *chain(n), np.zeros(n), F_K1M1))
     with pytest.raises(fm.InputError, match=re.escape(message)):
         fm.identify.sweep(f, {mass: X[:, mass - 1]}, masses=n, known=known)
 
 
-def test_another_chain_that_fits_as_well_is_told():
+def test_another_chain_that_fits_as_well_is_reported():
     """Of mass 2 with gamma known: f_k1m1^2 and f0^2 (1 + gamma) have their sum and product only."""
     gamma, kappa = MASSES[1], SPRINGS[1]
     f = band(2)

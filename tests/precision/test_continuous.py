@@ -386,7 +386,7 @@ def test_without_friction():
 
 
 def test_on_the_boundary_next_to_a_pole():
-    """|V| = beta_lim |U| there but for rounding, which must not be taken for no motion."""
+    """|V| = beta_lim |U| there up to rounding, which must not be taken for no motion."""
     for place in (1.0, 1.0 / 3.0, 1.0 / 5.0):
         for distance in NEAR:
             r = place * (1.0 + distance)

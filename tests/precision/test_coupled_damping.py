@@ -80,7 +80,7 @@ def test_steady_states(case):
     assert taken >= 2
 
 
-def test_a_mode_without_damping_beside_coupled_ones():
+def test_a_mode_without_damping_with_coupled_ones():
     """Two equal masses on a third: against each other they move undamped; held they do not matter."""
     M = np.diag([1.0, 0.5, 0.5])
     K = np.array([[3.0, -1.0, -1.0], [-1.0, 1.5, 0.0], [-1.0, 0.0, 1.5]])
@@ -292,7 +292,7 @@ def test_motions_on_the_boundary():
             np.testing.assert_allclose(found["phase"][m, 0], np.exp(1j * motion.phase), rtol=0, atol=1e-8)
 
 
-def test_on_the_boundary_at_an_undamped_resonance_beside_coupled_modes():
+def test_on_the_boundary_at_an_undamped_resonance_with_coupled_modes():
     """Ends of a chain against each other do not move its middle, where the dashpot is: mean of both sides."""
     matrices = {**chain_matrices([1.0] * 3, [1.0] * 3), "C": dashpots(3, (0, 2, 0.3))}
     matrices["K"][2, 2] += 1.0
@@ -306,7 +306,7 @@ def test_on_the_boundary_at_an_undamped_resonance_beside_coupled_modes():
 
 
 def test_modal_damping_is_a_case(monkeypatch):
-    """The way of coupled damping with a matrix that couples nothing but for 1e-13."""
+    """The way of coupled damping with a matrix that couples by 1e-13 only."""
     damping = 0.04 * CHAIN["M"] + 0.03 * CHAIN["K"]
     given = {"contact_masses": [2], "load_mass": 3, "frequency_scale": 1.0}
     modal = fm.System(matrices={**CHAIN, "C": damping}, **given)

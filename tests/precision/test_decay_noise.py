@@ -15,7 +15,7 @@ STEP = 40.0 / 4096.0  # mm
 
 
 def fewest(count):
-    """Of so many intervals at 95 %, fewer hold the truth in one of 1,000 cases at the most."""
+    """Of this number of intervals at 95 %, fewer hold the truth in one of 1,000 cases at the most."""
     return int(binom.ppf(1e-3, count, 0.95))
 
 
@@ -41,7 +41,7 @@ def coloured(rng, x, level=0.04, memory=0.9):
 
 
 @pytest.mark.parametrize("disturbed", [rounded, coloured])
-def test_intervals_hold_the_truth_as_often_as_they_say(disturbed):
+def test_intervals_have_their_nominal_coverage(disturbed):
     held = np.zeros(len(NAMES), dtype=int)
     for seed in range(40):
         rng = np.random.default_rng([21, seed])
@@ -53,7 +53,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say(disturbed):
     assert (held >= fewest(40)).all(), dict(zip(NAMES, held.tolist(), strict=True))
 
 
-def test_joint_fits_of_coarse_decays_hold_the_truth_as_often_as_they_say():
+def test_intervals_of_joint_fits_of_coarse_decays_have_their_nominal_coverage():
     held = 0
     for seed in range(20):
         rng = np.random.default_rng([31, seed])
@@ -64,7 +64,7 @@ def test_joint_fits_of_coarse_decays_hold_the_truth_as_often_as_they_say():
     assert held >= fewest(20)
 
 
-def test_steps_above_the_noise_are_told():
+def test_steps_above_the_noise_are_reported():
     rng = np.random.default_rng(1)
     time, x = synthetic(drawn(rng), 1)
     coarse, fine = (

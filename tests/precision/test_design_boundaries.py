@@ -17,7 +17,7 @@ CHAIN = {"contact_masses": [2], "mass_ratios": [1, 1], "stiffness_ratios": [1, 1
 
 
 @pytest.mark.parametrize(("r", "beta"), [(1.5, 40.0), (1.6, 30.0), (1.0, 20.0), (2.5, 56.0)])
-def test_a_working_point_beside_a_narrow_peak_of_sticking(r, beta):
+def test_a_working_point_next_to_a_narrow_peak_of_sticking(r, beta):
     """One mass, spring k_t = 2 in the contact: it does not slip while 2/|3 - r^2 + 0.02 i r| <= beta."""
     system = fm.System(damping_ratios=0.01, contact_stiffness=2.0)
     half = 3.0 - 0.5 * 0.02**2
@@ -43,7 +43,7 @@ def half_range(r, second):
     return 0.5 * np.ptp(force)
 
 
-def test_a_working_point_beside_the_peak_of_a_second_harmonic():
+def test_a_working_point_next_to_the_peak_of_a_second_harmonic():
     """The held mass 1 resonates at sqrt(2), and at half of it with the second harmonic."""
     system = fm.System(**CHAIN, damping_ratios=0.01, load_harmonics={1: [1, 0], 2: [0.1, 0]})
     ds = fm.design.margin(system, 0.9, 2.0)

@@ -104,7 +104,7 @@ def test_response_far_from_the_load(masses, springs, zeta, contact, load, r):
     assert ds.beta_stick.item() == pytest.approx(float(force), rel=2e-14, abs=0.0)
 
 
-def test_sticking_beside_a_held_resonance_without_load():
+def test_sticking_near_a_held_resonance_without_load():
     """Mass 3 resonates behind the held contact, and the load does not feed it: F is 0/0 in modes."""
     chain = [1.0, 0.5, 2.0], [1.0, 2.0, 0.7], 0.0, [2], 1
     for offset in (1e-13, -1e-13, 1e-10, 1e-6):
@@ -193,7 +193,7 @@ def _largest(masses, springs, zeta, contact, r):
         ([1.0] * 5, [1.0] * 5, 0.3, [3]),
     ],
 )
-def test_largest_bracket_beside_a_resonance(masses, springs, zeta, contact):
+def test_largest_bracket_near_a_resonance(masses, springs, zeta, contact):
     """S stays finite where u of an undamped mode is infinite: two terms of order u are nearly opposite."""
     system = _chain(masses, springs, zeta, contact, 1)
     w = float(system.modes.w[0])

@@ -90,7 +90,7 @@ def test_the_table_of_motions_that_stop():
     assert integrated(r, beta, 0.02, 1.15) == pytest.approx(real + 1j * imaginary, abs=1e-9)
 
 
-def test_motions_that_stop_tell_static_friction():
+def test_motions_that_stop_determine_static_friction():
     ds = stopping(1, 0.0, 0.0)
     np.testing.assert_allclose(ds.estimate, [0.3, 0.5, 3.0, 0.02, 1.15], rtol=1e-6)
     assert (ds.regime.values == 1).sum() > 12
@@ -138,7 +138,7 @@ def test_the_robust_loss_of_clean_data():
 
 
 @pytest.mark.slow
-def test_mu_beside_one_has_an_interval_and_no_standard_error():
+def test_mu_next_to_one_has_an_interval_and_no_standard_error():
     """Motions hardly change with mu there: slopes say nothing of how far mu can go, and were refused."""
     r, beta = STOPPING[:, 0], STOPPING[:, 1]
     system = fm.System(excitation="base", damping_reference="base", damping_ratios=0.02)

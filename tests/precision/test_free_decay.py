@@ -148,7 +148,7 @@ def test_synthetic_measurements(measured, folder, kind):
 
 
 @pytest.mark.slow
-def test_intervals_hold_the_truth_as_often_as_they_say():
+def test_intervals_have_their_nominal_coverage():
     """Of 16 intervals fewer than 12 hold it in one of 1,200 cases; `benchmarks coverage` asks it of 400."""
     seeds = 16
     names = ["f_n", "zeta", "x_F", "X0", "t0", "centre"]
@@ -163,7 +163,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
     np.testing.assert_allclose(np.sqrt(np.mean(np.square(scaled), axis=0)), 1.0, atol=0.4)
 
 
-def test_a_bound_on_zeta_is_told():
+def test_a_bound_on_zeta_is_reported():
     """Without viscous damping half of all fits would have it below zero."""
     flags = []
     for seed in range(8):
@@ -236,7 +236,7 @@ def test_a_better_sum_counts_more_than_a_motion_that_can_be(truth, mu, seed):
 # Drift and outliers
 
 
-def test_a_drift_is_told_and_leaves_the_rest_as_it_is():
+def test_a_drift_is_reported_and_does_not_change_the_estimates():
     drift = 0.08  # mm/s: half a millimetre over the record, 16 times the noise
     time, x = synthetic(MIXED, 21)
     ds = fm.identify.free_decay(time, x + drift * time, drift=True)
@@ -274,7 +274,7 @@ def test_outliers_have_little_weight():
     assert np.sqrt(np.mean(np.square(pulled))) > 2.0 * np.sqrt(np.mean(np.square(soft)))
 
 
-def test_without_outliers_both_costs_tell_the_same():
+def test_without_outliers_both_costs_agree():
     """Of normal noise the soft cost is nearly as efficient: estimates differ by parts of their error."""
     time, x = synthetic(COULOMB, 5)
     linear, soft = (fm.identify.free_decay(time, x, loss=loss) for loss in ("linear", "soft_l1"))

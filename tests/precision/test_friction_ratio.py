@@ -188,7 +188,7 @@ def test_motion_that_just_slides():
     assert len(fm.identify.friction_ratio(r[0], lag)[0].beta) == 1
 
 
-def test_a_lag_beside_the_range_is_named_with_enough_digits():
+def test_a_lag_just_outside_the_range_is_named_with_enough_digits():
     reason = fm.identify.friction_ratio(0.8769076947157068, 111.3, system=fm.System(damping_ratios=0.05))[
         0
     ].reason

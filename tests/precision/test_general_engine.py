@@ -30,7 +30,7 @@ def solved_row(row, systems, **further):
 
 
 def check_extremes(found, offset, row, tolerance):
-    """Extremes of the masses; of a contact that rests for good only their range is determined."""
+    """Extremes of the masses; of a contact that stays stuck only their range is determined."""
     highest, lowest = found.highest[1] + offset, found.lowest[1] + offset
     size = max(np.abs(row["x_max"]).max(), np.abs(row["x_min"]).max())
     if row.get("mean_depends_on_start") or row.get("no_slip"):

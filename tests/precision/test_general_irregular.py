@@ -3,7 +3,7 @@ shares no code with the package.
 
 The marcher moves in physical coordinates by matrix exponentials on a fine grid, finds events on Taylor
 polynomials, and decides what follows an event by trying every pattern.  It knows no return map, and marches
-on until it has returned often enough, or for as long as it is told to.
+on until it has returned often enough, or for a given time.
 """
 
 import itertools

@@ -88,7 +88,7 @@ def test_strong_damping_leaves_the_right_number_of_half_cycles(seed):
     assert float(ds.mu_lower) <= 1.0 < float(ds.mu_upper)
 
 
-def test_the_frequency_is_searched_for_beside_that_of_the_turning_points():
+def test_the_frequency_is_searched_for_near_that_of_the_turning_points():
     """With zeta = 0.5 the turning points are 13 % slower than the natural frequency, each 0.16 as high."""
     truth = HEAVY._replace(zeta=0.5, x_F=0.01, X0=100.0, noise=0.001, rate=400.0)
     assert_true(fm.identify.free_decay(*synthetic(truth, 3)), truth)

@@ -145,7 +145,7 @@ def test_reference_long_periods(form, reference):
 
 @FORMS
 def test_reference_irregular_cells(form, reference):
-    """Status; stops and share stuck within three errors, but for a few; the amplitude of the cycles seen."""
+    """Status; stops and share stuck within three errors, with few exceptions; amplitude of these cycles."""
     off = []
     for row in reference["irregular_map"]:
         found = cell(five_masses(form), row["r"], row["beta"], row["mu"], start=row["start"])

@@ -54,7 +54,7 @@ def test_estimates_are_near_the_truth(three):
     assert np.isnan(mu.standard_error)
 
 
-def test_what_is_told_of_each(three):
+def test_results_of_each_measurement(three):
     assert float(three.friction_force_2) == pytest.approx(1.0 * float(three.estimate.sel(parameter="x_F_2")))
     assert float(three.beta_3) == pytest.approx(0.6 / 1.82, rel=0.01)
     assert float(three.stops_per_cycle_2) == settled(SHAKEN).stops
@@ -66,7 +66,7 @@ def test_what_is_told_of_each(three):
         np.testing.assert_allclose(chosen.model - chosen.data, chosen.residual, atol=1e-12)
 
 
-def test_together_they_tell_more_than_each_alone(three):
+def test_a_joint_fit_has_smaller_errors_than_each_alone(three):
     alone = fm.identify.record(*shaken(SHAKEN), damping_reference="base")
     for name, own in (("f_n", "f_n"), ("zeta", "zeta"), ("x_F", "x_F_2")):
         error = float(three.standard_error.sel(parameter=own))

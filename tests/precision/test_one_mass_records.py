@@ -76,7 +76,7 @@ def test_without_friction_it_is_the_harmonic_motion():
     assert state.stops == 0
 
 
-def test_held_for_good():
+def test_held_permanently():
     state, found = motion(0.5, 0.0, 1.5, 1.0, [0.2, 1.0], np.linspace(0.0, 6.0, 9), start=(0.1, 0.0))
     assert (state.repeats, state.stops, state.stuck) == (True, 0, pytest.approx(1.0))
     np.testing.assert_allclose(found, 0.1, atol=1e-15)

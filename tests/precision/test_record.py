@@ -1,4 +1,4 @@
-"""Records of steady motion: estimates against truths, errors against their scatter, what is known of mu."""
+"""Records of steady motion: estimates against truths, errors against their scatter, knowledge of mu."""
 
 import json
 

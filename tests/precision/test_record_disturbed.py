@@ -191,7 +191,7 @@ def test_a_record_of_a_mass_that_sticks_has_no_warning_of_clipping(motion):
     assert ds.sizes["sample"] == time.size
 
 
-def test_noise_shows_beside_flat_parts_that_are_most_of_a_record(motion):
+def test_noise_is_found_in_records_that_are_mostly_flat(motion):
     time = np.arange(0.0, 8.0, 0.0125)
     x = places(RIG, motion, time) + np.random.default_rng(1).normal(0.0, 0.01, time.size)
     cut = np.clip(x, -0.7, 0.5)
@@ -200,7 +200,7 @@ def test_noise_shows_beside_flat_parts_that_are_most_of_a_record(motion):
 
 
 def coarse(x, steps, noise=0.0, seed=1):
-    """Readings of a converter with so many steps over the motion, which its noise [steps] does not cover."""
+    """Readings of a converter with a number of steps over the motion, not covered by its noise [steps]."""
     step = np.ptp(x) / steps
     return np.round((x + np.random.default_rng(seed).normal(0.0, noise * step, x.size)) / step) * step
 
@@ -284,7 +284,7 @@ def test_a_stop_has_less_noise_than_a_slide(motion):
 
 
 @pytest.mark.slow
-def test_samples_beside_the_ends_of_the_range_do_not_draw_the_fit_inside(motion):
+def test_samples_near_the_ends_of_the_range_do_not_draw_the_fit_inside(motion):
     """Noise decides there which samples are cut off.  The mean of 8 errors has a deviation of 1/sqrt(8)."""
     fits = [fit(motion, seed, lambda time, x, rng: np.clip(x, -1.0, 1.3)) for seed in range(8)]
     mean = np.mean([off(ds) for ds in fits], axis=0)

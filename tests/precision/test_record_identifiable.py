@@ -75,7 +75,7 @@ def test_a_spring_that_is_not_found_leaves_no_friction_found():
 
 
 @pytest.mark.slow
-def test_a_decay_beside_the_record_gives_damping_and_friction():
+def test_a_decay_with_the_record_gives_damping_and_friction():
     """The model is still wrong, but the decay has a hold on f_n and zeta."""
     ds = fm.identify.joint(
         [synthetic(DECAY, 1), measured(ELASTIC, 1), measured(ELASTIC._replace(x_F=0.55), 2)],

@@ -410,7 +410,7 @@ def test_a_window_of_a_motion_that_does_not_repeat(contact, r, beta, mu, start, 
     assert np.abs(ds.z.values).max() <= cell.contact_amplitude.item() * (1.0 + 1e-12)
 
 
-def test_response_tells_its_status():
+def test_response_reports_its_status():
     assert int(fm.response(fm.System(), 0.3, 0.5).status) == regimes.RESOLVED
     assert int(fm.response(fm.System(), 0.5, 0.1).status) == regimes.MARGINAL
     assert int(fm.response(fm.System(), 0.5, 0.1, outputs=["amplitude"]).status) == regimes.MARGINAL

@@ -65,7 +65,7 @@ def test_synthetic_sweeps(measured, folder):
     assert ds.verdict.flag_meanings.split()[int(ds.verdict)] == "two_frequencies_found"
 
 
-def test_errors_that_are_too_small_are_told():
+def test_errors_that_are_too_small_are_reported():
     x = amplitudes(FREQUENCIES) * np.exp(np.random.default_rng(1).normal(0.0, 0.05, FREQUENCIES.size))
     ds = fm.identify.sweep(FREQUENCIES, x, sigma_amplitude=0.01)
     assert ds.verdict.flag_meanings.split()[int(ds.verdict)] == "scatter_beyond_errors"
@@ -132,7 +132,7 @@ def test_resonances_next_to_a_sample():
     assert np.abs((ds.estimate - truth) / ds.standard_error).max() < 4.0
 
 
-def test_both_sides_of_a_sample_are_told():
+def test_fits_on_both_sides_of_a_sample_are_reported():
     """The second resonance is so near to a sample that noise makes its other side the better one."""
     truth, *data = beside_a_sample(299)
     ds = fm.identify.sweep(*data)

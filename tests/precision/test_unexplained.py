@@ -88,7 +88,7 @@ def test_a_hidden_spring_of_a_record_is_found(kt):
         assert value(ds, "contact_stiffness") == pytest.approx(kt, rel=0.05)
 
 
-def test_a_hidden_spring_beside_held_values():
+def test_a_hidden_spring_with_held_values():
     """As the guide recommends f_n and zeta are held; each is doubted, but the spring explains far more."""
     held = {"f_n": STICKS.f_n, "zeta": STICKS.zeta, "mu": 1.0}
     ds = fit(sampled(STICKS._replace(spring=10.0), 2), **held)
@@ -190,7 +190,7 @@ def test_right_records_are_not_doubted():
             assert "explains" not in headline(ds)
 
 
-def test_the_headline_says_how_well_the_channels_must_agree():
+def test_the_headline_states_how_well_the_channels_must_agree():
     """A delay of that size moves an estimate by half its interval, and does not show."""
     data = sampled(SLIDES, 2)
     ds = fit(data, mu=1.0)

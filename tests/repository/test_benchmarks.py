@@ -121,7 +121,7 @@ def test_there_is_no_timing_outside_the_quoted_results():
 
 
 @pytest.mark.parametrize("name", results_page.QUOTED)
-def test_committed_results_are_whole(name):
+def test_committed_results_are_complete(name):
     content = json.loads((RESULTS / f"{name}.json").read_text())
     assert {"processor", "system", "python", "versions"} <= set(content["machine"])
     assert spreads(content) or name in UNTIMED

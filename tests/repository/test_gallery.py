@@ -90,7 +90,7 @@ def wanted():
     return found
 
 
-def test_scripts_compute_what_the_configurations_say(tmp_path, monkeypatch):
+def test_scripts_compute_the_cells_of_the_configurations(tmp_path, monkeypatch):
     figures = wanted()
     made = []
     for path in GALLERY:

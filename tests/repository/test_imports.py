@@ -58,7 +58,7 @@ print([name for name in {HEAVY!r} if name in sys.modules])
 
 
 @pytest.mark.parametrize(("given", "expected"), [(None, "1"), ("3", "3")])
-def test_the_program_uses_one_blas_thread_unless_it_is_told_otherwise(given, expected, monkeypatch):
+def test_the_program_uses_one_blas_thread_by_default(given, expected, monkeypatch):
     """This is settled before numpy is imported, which would not see it later."""
     monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
     if given:

@@ -50,7 +50,7 @@ def text(manual, page):
     return (manual / page).read_text(encoding="utf-8")
 
 
-def test_every_command_and_option_is_told(manual):
+def test_every_command_and_option_is_documented(manual):
     page = text(manual, "reference/commands.html")
     for command in described():
         assert f"frictionmap {command.name}" in page
@@ -58,14 +58,14 @@ def test_every_command_and_option_is_told(manual):
         assert not {flag for flag in flags if flag not in page}
 
 
-def test_every_key_and_output_is_told(manual):
+def test_every_key_and_output_is_documented(manual):
     page = text(manual, "reference/configuration.html")
     assert all(f">{key.name}<" in page for keys in KEYS.values() for key in keys)
     variables = text(manual, "reference/variables.html")
     assert all(f">{name}<" in variables for name in (*OUTPUTS, *GENERAL_OUTPUTS))
 
 
-def test_every_public_name_is_told(manual):
+def test_every_public_name_is_documented(manual):
     page = text(manual, "reference/api.html")
     for name in set(fm.__all__) - {"__version__", "design", "features", "identify", "regimes"}:
         assert f'id="frictionmap.{name}"' in page, name

@@ -95,7 +95,7 @@ def printed(request, tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("printed", sorted(PAGES), indirect=True)
-def test_commands_run_and_print_what_the_page_says(printed):
+def test_commands_run_and_print_the_output_on_the_page(printed):
     page, out = printed
     shown = [text for path in GUIDES if path.name == page for text in _outputs(path)]
     seen = {" ".join(line.split()) for line in out.splitlines()}

@@ -1,7 +1,8 @@
 """Wording: texts of the program use the words of the field, not the phrases of a short list.
 
-The list gives a replacement for each phrase.  It is applied to README, manual, release notes, comments of
-configurations, help texts, error messages and docstrings.
+The list gives a replacement for each phrase.  It is applied to README, manual, release notes, paper, comments
+of configurations, help texts, error messages, docstrings, labels of variables and other texts of the program,
+the page in the browser, and docstrings of tests.  Two more lists are of names: of tests and of functions.
 """
 
 import ast
@@ -60,6 +61,40 @@ BANNED = (
     (r"put in words|in so narrow|by whose hand|the like of", "plain English"),
 )
 
+#: Words of names of tests (regular expression), and what to write instead.
+WORDS_OF_TESTS = (
+    (r"says?|tells?", "states, reports, shows, determines"),
+    (r"told", "reported, stated, shown, distinguished"),
+    (r"beside", "next to, near, with"),
+    (r"so and so", "how many, how often"),
+    (r"for good", "permanently"),
+    (r"goes on|to go on", "resumes, continues"),
+    (r"(il)?legal", "valid, invalid"),
+    (r"(is|are) whole", "complete, undamaged"),
+    (r"dear", "slow, expensive"),
+)
+
+#: Names of functions that do not state what they return or do (regular expression), and what to write.
+NAMES_OF_FUNCTIONS = (
+    (r"_?(\w+_)?(told|asked)", "describe_x, x_warnings, as_config"),
+    (r"_?(in_)?words", "describe, describe_x"),
+    (r"_?(tamed|tempered)", "winsorised, inflate_errors"),
+    (r"_?(solved|improved|sharpened|refitted)", "solve_x, refine_x, fit_again"),
+    (r"_?(beside|reach)", "the noun: residual, limit, neighbours"),
+    (r"_of_\w+", "the noun first: peak_rows, fit_warnings"),
+    (r"_in_(one|what\w*|order|short|rows|columns|time|units|file|sight)", "the verb or the noun first"),
+    (
+        r"_?(by_holding|hold_some|let_go|settle_for_less|forget_orbits|keep_state|bring_back)",
+        "verb and object",
+    ),
+)
+
+#: Parts whose names and further texts are not checked; their docstrings and messages are.
+EXCEPTED = re.compile(
+    r"frictionmap/(_kernels/|identify/(time_series/|response/|joint_fit/parts\.py|explanations\.py)|general/held\.py)"
+    r"|tests/limits/"
+)
+
 #: First words of docstrings that are fragments.
 FRAGMENTS = r"(Of|Those of|That of|The same of|The same as|What of|Than)"
 
@@ -85,6 +120,7 @@ def compiled(pattern):
 
 
 PATTERNS = [(compiled(pattern), instead) for pattern, instead in BANNED]
+TEST_PATTERNS = [(compiled(pattern), instead) for pattern, instead in WORDS_OF_TESTS]
 
 
 def findings(texts):
@@ -141,6 +177,70 @@ def python_texts(paths):
         yield from messages(tree, place)
 
 
+def texts_within(tree, place):
+    """Texts of more than two words in code: labels, comments in files, lines that are printed."""
+    parts = {
+        id(part) for node in ast.walk(tree) if isinstance(node, ast.JoinedStr) for part in ast.walk(node)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.JoinedStr):
+            text = "".join(part.value if isinstance(part, ast.Constant) else "{}" for part in node.values)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in parts:
+            text = node.value
+        else:
+            continue
+        if len(text.split()) > 2:
+            yield Text(f"{place}:{node.lineno}", text)
+
+
+#: Comments and texts of a script.
+SCRIPT = re.compile(
+    r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|`(?:\\.|[^`\\])*`""", re.DOTALL
+)
+
+
+def script_texts(source, place):
+    """Comments and texts of a script; the marks of comments are left out."""
+    for match in SCRIPT.finditer(source):
+        line = source.count("\n", 0, match.start()) + 1
+        yield Text(f"{place}:{line}", re.sub(r"\n\s*\*", " ", match[0]))
+
+
+def page_texts(path):
+    """Texts of a file of the page: of a script, or all of a style sheet or of HTML."""
+    source, place = path.read_text(encoding="utf-8"), str(path.relative_to(ROOT))
+    return script_texts(source, place) if path.suffix == ".js" else [Text(place, source)]
+
+
+def checked(paths):
+    """Paths of which all texts and names are checked."""
+    return [path for path in paths if not EXCEPTED.match(path.relative_to(ROOT).as_posix())]
+
+
+def functions(paths):
+    """Names of functions, and where they are."""
+    for path in paths:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                yield Text(f"{path.relative_to(ROOT)}:{node.lineno}", node.name)
+
+
+def names_of_tests(names):
+    """Words of names of tests that are to be replaced."""
+    for place, name in names:
+        for pattern, instead in TEST_PATTERNS:
+            for match in pattern.finditer(name.replace("_", " ") if name.startswith("test_") else ""):
+                yield Finding(place, match[0], instead)
+
+
+def names_of_functions(names):
+    """Names of functions that are to be replaced."""
+    for place, name in names:
+        for pattern, instead in NAMES_OF_FUNCTIONS:
+            if re.fullmatch(pattern, name):
+                yield Finding(place, name, instead)
+
+
 def fragments(paths):
     """Docstrings that begin with a fragment."""
     for path in paths:
@@ -171,7 +271,8 @@ def made(path):
 
 
 PAGES = [
-    *(ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")),
+    *(ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md")),
+    *sorted((ROOT / "paper").rglob("*.md")),
     *(
         path
         for path in sorted((ROOT / "docs").rglob("*.[mr][ds]*"))
@@ -218,6 +319,43 @@ def test_docstrings_and_messages(part):
     assert not report(found)
 
 
+@pytest.mark.parametrize("part", package_parts())
+def test_further_texts(part):
+    """Labels of variables, comments in files, lines that are printed."""
+    for path in checked(files_of(part)):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        assert not report(findings(texts_within(tree, path.relative_to(ROOT))))
+
+
+@pytest.mark.parametrize("part", package_parts())
+def test_names_of_functions(part):
+    assert not report(names_of_functions(functions(checked(files_of(part)))))
+
+
+def test_citation():
+    assert not report(findings([Text("CITATION.cff", (ROOT / "CITATION.cff").read_text(encoding="utf-8"))]))
+
+
+PAGE = sorted(path for path in (ROOT / "frictionmap").rglob("*.*") if path.suffix in (".js", ".html", ".css"))
+
+
+@pytest.mark.parametrize("path", PAGE, ids=lambda path: path.name)
+def test_page(path):
+    assert not report(findings(page_texts(path)))
+
+
+def test_names_of_tests():
+    paths = checked(sorted((ROOT / "tests").rglob("*.py")))
+    assert not report(names_of_tests(functions(paths)))
+
+
+def test_docstrings_of_tests():
+    paths = checked(sorted((ROOT / "tests").rglob("*.py")))
+    for path in paths:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        assert not report(findings(docstrings(tree, path.relative_to(ROOT))))
+
+
 @pytest.mark.parametrize(
     ("text", "phrase"),
     [
@@ -243,3 +381,25 @@ def test_messages_and_docstrings_are_read(tmp_path):
     tree = ast.parse(source)
     assert [text.text for text in docstrings(tree, "f")] == ["Those of a cell."]
     assert [found.phrase for found in findings(messages(tree, "f"))] == ["legal"]
+
+
+def test_texts_within_code_are_read():
+    source = 'LABEL = "it rests for good"\nOTHER = f"a {LABEL} b {1} c"\nSHORT = "for good"\n'
+    texts = list(texts_within(ast.parse(source), "f"))
+    assert texts == [Text("f:1", "it rests for good"), Text("f:2", "a {} b {} c")]
+
+
+def test_scripts_are_read():
+    script = (
+        "/** It sticks\n * for good. */\nconst legal = `a ${1} dear`; // is told\n"
+        "f(\"so and so often\", 'so many x');\n"
+    )
+    found = [one.phrase for text in script_texts(script, "a.js") for one in findings([text])]
+    assert found == ["for good", "dear", "is told", "so and so often", "so many x"]
+
+
+def test_names_are_found():
+    names = [Text("f", name) for name in ("test_it_says_so", "says", "test_essays", "test_sticks_for_good")]
+    assert [found.phrase for found in names_of_tests(names)] == ["says", "for good"]
+    names = [Text("f", name) for name in ("_of_peaks", "mu_told", "words", "reached", "describe", "_rows_of")]
+    assert [found.phrase for found in names_of_functions(names)] == ["_of_peaks", "mu_told", "words"]

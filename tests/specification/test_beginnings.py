@@ -88,7 +88,7 @@ def test_every_key_is_there_once_and_shows_its_default(contact, tmp_path):
                 assert same(loaded(tmp_path, head + tail.replace(line, line[1:], 1)), before), line
 
 
-def test_what_is_legal_stands_above_each_key():
+def test_valid_values_stand_above_each_key():
     text = starting_configuration("map")
     for keys in KEYS.values():
         for key in keys:

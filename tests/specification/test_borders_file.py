@@ -74,7 +74,7 @@ def test_borders_are_drawn_with_their_mu(path):
     }
 
 
-def test_a_file_says_what_borders_of_larger_mu_are(path):
+def test_a_file_states_the_meaning_of_borders_for_larger_mu(path):
     ds = read(path)
     assert "basin" in ds.border_mu.attrs["comment"]
     several = ds.border_mu.values > 1.0

@@ -496,7 +496,7 @@ def test_info(folder, capsys):
     assert "[boundaries]" in output_of(capsys, ["info", "good-boundaries.nc"])
 
 
-def test_info_says_what_can_be_done_about_unresolved_cells(folder, capsys):
+def test_info_gives_a_remedy_for_unresolved_cells(folder, capsys):
     grid = ["--set", "grid.r=[0.0, 0.5]", "--set", "grid.beta=[0.1]", "--set", 'solver.outputs=["status"]']
     status_of(["map", "good.toml", "--quiet", *grid])
     assert "1 cell quasi_static: at r = 0" in output_of(capsys, ["info", "good.nc"])

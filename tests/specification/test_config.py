@@ -83,7 +83,7 @@ def test_a_byte_order_mark_and_windows_line_ends_are_accepted(base, tmp_path):
 
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
-def test_the_configurations_that_come_with_the_program_are_legal(path):
+def test_the_configurations_that_come_with_the_program_are_valid(path):
     config = load_config(path)
     assert config.title != config.name
     motion = config.r.size == config.beta.size == config.mu.size == 1
@@ -248,7 +248,7 @@ def test_an_override_may_add_a_table(tmp_path):
     assert config.solver.cycles == 7
 
 
-def test_matrices_are_looked_for_beside_the_configuration(base, tmp_path, monkeypatch):
+def test_matrices_are_looked_for_next_to_the_configuration(base, tmp_path, monkeypatch):
     for name in ("elsewhere", "data"):
         (tmp_path / name).mkdir()
     np.savez(tmp_path / "data" / "frame.npz", M=np.eye(2), K=np.array([[2.0, -1.0], [-1.0, 1.0]]))
@@ -385,7 +385,7 @@ def test_bad_arguments(base, arguments, message):
 
 @pytest.mark.parametrize("path", sorted((ROOT / "configs").glob("*.toml")), ids=lambda path: path.stem)
 def test_every_configuration_loads(path):
-    """Each file of configs/ is legal, and its curves have no hole but those that are limits."""
+    """Each file of configs/ is valid, and its curves have no hole but those that are limits."""
     config = fm.load_config(path)
     ds = fm.boundaries(config.system, config.r, config.mu)
     assert not np.any(np.isnan(ds.beta_lim))

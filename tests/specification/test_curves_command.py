@@ -1,4 +1,4 @@
-"""Response curves as datasets and files: what they hold, what is asked for, what is refused."""
+"""Response curves as datasets and files: contents, requested quantities, refusals."""
 
 import numpy as np
 import pytest
@@ -134,7 +134,7 @@ def test_the_command_writes_what_python_computes(config, tmp_path, capsys):
         assert ds.attrs["config"] == text
 
 
-def test_a_file_is_told_on_one_screen(config, tmp_path, capsys):
+def test_a_summary_of_a_file_fits_on_one_screen(config, tmp_path, capsys):
     out = tmp_path / "out.nc"
     assert main(["curves", str(config), "-o", str(out), "--quiet"]) == 0
     assert capsys.readouterr().out == ""

@@ -83,7 +83,7 @@ def test_errors_of_samples_are_those_given_or_those_of_the_residuals(datasets):
     np.testing.assert_allclose(decay.sigma, expected, rtol=1e-12)
 
 
-def test_other_commands_take_them_or_say_why_not(files, tmp_path, monkeypatch, capsys):
+def test_other_commands_take_them_or_give_the_reason(files, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     path = str(files["free-decay"])
     assert main(["export", path, "-o", "table.csv", "--quiet"]) == 0

@@ -18,7 +18,7 @@ def test_the_files_are_those_of_the_generator():
     assert {path.name: path.read_text(encoding="utf-8") for path in RIGS.iterdir()} == rig_files()
 
 
-def test_the_files_are_small_and_say_that_nothing_was_measured():
+def test_the_files_are_small_and_state_that_nothing_was_measured():
     assert sum(path.stat().st_size for path in RIGS.iterdir()) < 60_000
     for path in RIGS.iterdir():
         assert path.read_text(encoding="utf-8").startswith("# Synthetic: made by frictionmap.examples"), path
@@ -53,7 +53,7 @@ def test_the_command_finds_the_truth(kind, tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("kind", TRUTHS)
-def test_the_truth_stands_beside_the_data(kind):
+def test_the_truth_is_stored_with_the_data(kind):
     text = (RIGS / f"{kind}.toml").read_text(encoding="utf-8")
     (told,) = re.findall(r"^# The truth, in Hz, mm and s: (.*)$", text, re.MULTILINE)
     pairs = (part.split(" = ") for part in told.split(", "))

@@ -105,7 +105,7 @@ def test_pieces_of_a_quantity_are_those_of_sweep(two, name):
     np.testing.assert_array_equal(joined, whole.astype(np.float32))
 
 
-def test_a_cell_moves_as_response_says(one):
+def test_a_cell_has_the_motion_of_response(one):
     _, arrays = packet(one, "/motion?at=0.3,0.5&mu=1")
     header, _ = packet(one, "/motion?at=0.3,0.5&mu=1")
     ds = fm.response(fm.System(), 0.3, 0.5, points=arrays["tau"].size - 1)
@@ -149,7 +149,7 @@ def test_a_motion_of_every_kind_is_rehearsed(one, two, monkeypatch):
         ("at=1.5,0.1&mu=1", 1, ""),
     ],
 )
-def test_a_lag_that_is_none_says_why(one, asked, period, why):
+def test_the_reason_of_a_missing_lag_is_given(one, asked, period, why):
     header, arrays = packet(one, f"/motion?{asked}")
     numbers = dict(zip([entry["name"] for entry in header["entries"]], arrays["numbers"], strict=True))
     assert numbers["period"] == period
@@ -171,7 +171,7 @@ def test_a_lag_that_is_none_says_why(one, asked, period, why):
         ),
     ],
 )
-def test_a_cell_is_told_in_words(one, at, mu, regime, words):
+def test_a_cell_is_described_in_words(one, at, mu, regime, words):
     header, _ = packet(one, f"/motion?at={at}&mu={mu}")
     assert header["regime"] == regime
     for sentence, begin in zip(header["summary"], words, strict=True):
@@ -186,7 +186,7 @@ def test_the_velocity_in_a_moving_contact(one):
     np.testing.assert_allclose(arrays["z_rate"][1:-1], rate[1:-1], atol=2e-3)
 
 
-def test_a_cell_without_a_steady_state_says_why(one):
+def test_the_reason_of_a_missing_steady_state_is_given(one):
     header, arrays = packet(one, "/motion?at=1,0.1&mu=1")
     assert "undamped resonance" in header["none"]
     assert arrays == {}
@@ -227,7 +227,7 @@ def test_a_cut_is_that_of_curves(two, along, place):
 
 
 def test_a_reduced_structure_is_shown_where_it_is_like_the_whole(tmp_path, monkeypatch):
-    """Of so many modes compliances err by 0.9e-3 up to r = 3, and by 12e-3 up to r = 6."""
+    """With this number of modes compliances err by 0.9e-3 up to r = 3, and by 12e-3 up to r = 6."""
     compared = []
     comparison = reduction.Comparison
     monkeypatch.setattr(
@@ -280,7 +280,7 @@ def test_masses_are_called_by_their_numbers_in_the_file(tmp_path):
 # What it begins with
 
 
-def test_a_scene_tells_what_can_be_changed(one, two):
+def test_a_scene_lists_the_parameters_that_can_be_changed(one, two):
     first = json.loads(ask(one, "/scene")[1])
     assert first["title"] == "One mass"
     assert (first["r"], first["beta"], first["mu"]) == ([0.0, 2.0], [0.0, 1.2], 1.5)
@@ -468,7 +468,7 @@ def test_an_address_that_is_too_long(one):
     assert body.count(b"\n") == 1
 
 
-def test_trouble_of_ours_is_told_in_a_line(one, monkeypatch):
+def test_internal_errors_are_reported_in_a_line(one, monkeypatch):
     def fail(*_):
         raise ZeroDivisionError("of ours")
 
@@ -587,7 +587,7 @@ def test_lanes():
     assert len(jobs._lanes) < 1000
 
 
-def test_compiling_is_told():
+def test_compilation_is_reported():
     jobs = Jobs()
     jobs.listen()
     listener = listeners[-1]
@@ -706,7 +706,7 @@ def test_cells_as_files(one, tmp_path):
     ("scene", "query"),
     [(ONE, "quantity=work_friction"), (ONE + UNITS, "quantity=work_friction"), (TWO, "quantity=amplitude_2")],
 )
-def test_sizes_of_files_are_told_before(tmp_path, scene, query):
+def test_sizes_of_files_are_stated_before(tmp_path, scene, query):
     with served(scene_from(tmp_path, scene)) as server:
         query = f"columns=60&rows=40&mu=1&{query}"
         told = {
@@ -920,7 +920,7 @@ def test_python_refuses(arguments, words):
 # Units
 
 
-def test_units_stand_beside_the_ratios(tmp_path):
+def test_units_stand_next_to_the_ratios(tmp_path):
     with served(scene_from(tmp_path, ONE + UNITS)) as server:
         told = json.loads(ask(server, "/scene")[1])
         assert told["r"] == [0.0, 2.0]

@@ -135,7 +135,7 @@ def test_further_ranges_without_stops_are_those_of_sweep(pages):
 
 
 @pytest.mark.parametrize(("name", "r", "beta"), [("two", 0.6, 0.6), ("two", 0.9, 0.3), ("two", 0.5, 1.1)])
-def test_a_cell_moves_as_response_says(pages, name, r, beta):
+def test_a_cell_has_the_motion_of_response(pages, name, r, beta):
     page = pages[name]
     ds = fm.response(page.page.scene.system, r, beta, points=400)
     header, arrays = packet(page, f"/motion?at={r},{beta}")

@@ -106,7 +106,7 @@ def test_a_slider_changes_the_map(browser, tmp_path, text, key, before, after):
             np.testing.assert_array_equal(seen, wanted(system, R, BETA, 1.0, seen.shape[:2]))
 
 
-def test_a_page_as_a_file_tells_what_it_contains(browser, tmp_path, monkeypatch):
+def test_a_page_as_a_file_lists_its_contents(browser, tmp_path, monkeypatch):
     monkeypatch.setattr(stored, "_CELLS", {False: (24, 18), True: (24, 18)})
     monkeypatch.setattr(stored, "_PLACES", 2)
     path = tmp_path / "page.html"

@@ -135,7 +135,7 @@ def test_a_picture_saved_while_another_is_computed_is_the_one_before(browser, on
 
 
 class Gate:
-    """Pieces of maps, as slow as said, of which so many get through."""
+    """Pieces of maps with a delay, of which a limited number gets through."""
 
     def __init__(self, work, seconds):
         self.work, self.seconds = work, seconds
@@ -175,7 +175,7 @@ def test_a_half_filled_map_is_not_counted(browser, one, monkeypatch):
         page.wait_for_selector(DONE)
 
 
-def test_a_motion_beside_a_newer_map_is_computed_anew(browser, one):
+def test_a_motion_shown_with_a_newer_map_is_computed_anew(browser, one):
     with page_of(browser, f"{one.url}#cell=0.4,0.3&cut=beta", viewport=LARGE) as page:
         page.wait_for_selector("#cut:not([hidden])")
         page.wait_for_selector("#motion tbody tr")
@@ -236,7 +236,7 @@ def test_a_view_that_is_refused_is_not_saved(browser, one):
 
 
 @pytest.mark.slow
-def test_a_page_as_a_file_shows_the_map_that_its_sliders_say(browser, tmp_path):
+def test_a_page_as_a_file_shows_the_map_of_its_sliders(browser, tmp_path):
     """Sliders that were not moved together when it was written go back, in words."""
     scene = scene_from(tmp_path, TWO_MASSES)
     with pytest.MonkeyPatch.context() as patch:

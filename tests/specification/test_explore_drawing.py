@@ -51,7 +51,7 @@ def test_large_structures_are_drawn_by_contact_and_load():
     assert (found["loaded"], found["contacts"][0]["masses"]) == ([0], [1])
 
 
-def test_base_and_loads_move_as_the_system_says():
+def test_base_and_loads_have_the_motion_of_the_system():
     base = drawing_curves(fm.System("joined-base-wall"), TAU)
     np.testing.assert_allclose(base["base"], np.cos(TAU), atol=1e-6)
     two = fm.System("fixed-wall", [1], load=[0.5, 1j], mass_ratios=[1, 1], stiffness_ratios=[1, 1])
@@ -228,7 +228,7 @@ def test_the_time_left_is_that_of_the_job_that_is_waited_for(tmp_path, monkeypat
 
 
 def left_after(kernels, seconds, tmp_path, monkeypatch):
-    """Seconds that the page states after so many of 100 kernels, expected to take 100 s together."""
+    """Seconds that the page states after some of 100 kernels, expected to take 100 s together."""
     clock = [1000.0]
     monkeypatch.setattr(jobs_module.time, "monotonic", lambda: clock[0])
     times = CompileTimes(tmp_path / "times.json")

@@ -78,7 +78,7 @@ def address(page):
     return dict(urllib.parse.parse_qsl(urllib.parse.urlsplit(page.url).fragment))
 
 
-def test_the_panel_says_what_design_says(browser, chain):
+def test_the_panel_agrees_with_design(browser, chain):
     band = (0.3, 2.2)
     with page_of(browser, chain.url, viewport=LARGE) as page:
         for name, value in zip(("from", "to"), band, strict=True):

@@ -367,7 +367,7 @@ def test_the_whole_legend_is_seen_on_a_laptop(browser, one):
         assert low <= high <= 800
 
 
-def test_what_is_wrong_is_told_in_a_line(browser, one):
+def test_errors_of_the_address_are_reported_in_a_line_each(browser, one):
     address = "#mu=abc&r=3,1&damping_ratios=-1&zeta=0.1&beta=0,0.9&cell=1&quantity=stuck_fraction"
     with page_of(browser, one.url + address) as page:
         keys = "r, beta, quantity, cell, start, contact, cut, mu, damping_ratios"
@@ -396,7 +396,7 @@ def test_what_is_wrong_is_told_in_a_line(browser, one):
         ]  # the browser's own note
 
 
-def test_a_server_that_has_ended_is_told(browser, tmp_path):
+def test_a_server_that_has_ended_is_reported(browser, tmp_path):
     with contextlib.ExitStack() as stack:
         server = stack.enter_context(served(scene_from(tmp_path, ONE)))
         with page_of(browser, server.url) as page:
@@ -535,7 +535,7 @@ def test_it_fits_any_width(browser, one, width):
         assert area(page)[2] > 200
 
 
-def test_what_is_asked_is_what_the_address_says(browser, one):
+def test_the_page_unpacks_the_packets_of_the_server(browser, one):
     """A packet of the server, unpacked by the page, is what Python unpacks."""
     with page_of(browser, one.url) as page:
         regime, z, numbers = json.loads(page.evaluate(UNPACK))

@@ -145,7 +145,7 @@ def test_sizes_in_other_units(mapped, text, inches):
     assert fm.plot_regimes(mapped, size=text)[0].figure.get_figwidth() == pytest.approx(inches)
 
 
-def test_panels_stand_below_each_other_in_one_column_and_beside_in_two(mapped):
+def test_panels_stand_below_each_other_in_one_column_and_next_to_each_other_in_two(mapped):
     one, two = (fm.plot_regimes(mapped, size=size) for size in ("85mm", "170mm"))
     assert one[0].get_position().x0 == pytest.approx(one[1].get_position().x0, abs=0.05)
     assert two[0].get_position().x1 < two[1].get_position().x0

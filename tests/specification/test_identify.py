@@ -72,7 +72,7 @@ def test_an_existing_file_is_kept(rig, capsys):
     assert Path("decay.csv").read_bytes() == before
 
 
-def test_known_and_free_say_the_same(rig, capsys):
+def test_known_and_free_must_agree(rig, capsys):
     path = rig(csv_of(*synthetic(TRUTH, 1)), "[known]\nzeta = 0.01")
     assert main(["identify", str(path)]) == 0
     assert re.search(r"zeta +0.01 +held", capsys.readouterr().out)
@@ -184,7 +184,7 @@ def test_rows_without_a_number_are_dropped_on_request_only(rig, capsys):
     assert "9 of 800 rows have none; at most 1% may be ignored" in message
 
 
-def test_gaps_and_clipped_samples_are_told(rig, capsys):
+def test_gaps_and_clipped_samples_are_reported(rig, capsys):
     time, x = synthetic(TRUTH, 1)
     path = rig(csv_of(np.delete(time, slice(300, 340)), np.delete(x, slice(300, 340))))
     assert main(["identify", str(path)]) == 0

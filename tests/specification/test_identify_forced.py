@@ -109,7 +109,7 @@ def test_errors_by_row_and_from_the_residuals(rig, capsys):
     assert "cannot use data.sigma_phase_deg" in refusal(capsys, "identify", path, "--overwrite")
 
 
-def test_lags_alone_do_not_tell_the_frequency(rig, capsys):
+def test_lags_alone_do_not_determine_the_frequency(rig, capsys):
     lines = [columns(line, 0, 1, 2) for line in LINES]
     head = "set,frequency_Hz,phase_lag_deg"
     assert main(["identify", rig(lines, RIG.replace("mu = 1.0", "mu = 1.0\nzeta = 0.01"), head)]) == 0
@@ -142,7 +142,7 @@ def test_lags_that_no_friction_gives(rig, capsys):
     assert "warning: 1 lags that no friction ratio gives were ignored" in capsys.readouterr().out
 
 
-def test_lags_tell_friction_one_by_one(rig):
+def test_each_lag_determines_the_friction(rig):
     assert main(["identify", rig(), "--quiet"]) == 0
     with xr.open_dataset("rig-identify.nc") as ds:
         own = ds.isel(sample=ds.lag_sample.values)
@@ -208,7 +208,7 @@ def test_a_measured_frequency_goes_before_its_ratio(rig):
     assert main(["identify", rig(lines, head=f"{HEAD},frequency_ratio"), "--quiet"]) == 0
 
 
-def test_the_load_of_the_other_excitation_beside_its_own(rig, capsys):
+def test_the_load_of_the_other_excitation_with_its_own(rig, capsys):
     lines = [f"{line},3.0" for line in LINES]
     assert main(["identify", rig(lines, head=f"{HEAD},force_N")]) == 0
     assert "columns of table.csv that are not used: force_N" in capsys.readouterr().out
@@ -341,7 +341,7 @@ def test_bad_arguments(arguments, message):
     assert message in str(caught.value)
 
 
-def test_what_data_cannot_tell():
+def test_a_parameter_that_data_do_not_depend_on():
     """Where the held structure resonates friction on the second mass leaves the first one alone."""
     system = fm.System(contact_masses=[2], excitation="base", mass_ratios=[1, 1], stiffness_ratios=[1, 1])
     f, one = np.full(4, np.sqrt(2.0)), {1: np.array([1.0, 1.01, 0.99, 1.0])}
@@ -350,7 +350,7 @@ def test_what_data_cannot_tell():
         fm.identify.forced(f, None, one, system=system, known=known)
 
 
-def test_what_data_cannot_tell_apart():
+def test_parameters_that_data_determine_only_together():
     """Four amplitudes at one frequency: friction, frequency and damping trade without end."""
     with pytest.raises(fm.InputError, match=r"cannot identify .* separately: .*; fix one in \[known\]"):
         fm.identify.forced(np.full(4, 2.0), None, [1.61, 1.6, 1.6, 1.59], known={"mu": 1.0})

@@ -74,7 +74,7 @@ def test_three_masses_with_lags(rig):
         assert ds.sizes["sample"] == 4 * f.size
 
 
-def test_what_cannot_be_told_is_named(rig, capsys):
+def test_parameters_that_are_not_determined_are_named(rig, capsys):
     message = refusal(capsys, "identify", rig(LINES, head="frequency_Hz,amplitude_ratio_2"))
     assert "amplitude_ratio_2" in message
     assert "cannot identify f_k1m1, gamma, kappa separately: mass 2 does not determine them; fix 1" in message

@@ -115,7 +115,7 @@ def test_what_depends_on_r_does_not_depend_on_the_other_frequencies(kind):
 def test_a_cell_does_not_depend_on_the_others(kind):
     """Alone and in another grid: the same answer, to the bit.
 
-    But for mu = 1, where a neighbour saves the way to the one answer there is, and so may its last digits be.
+    Except for mu = 1, where a neighbour saves the way to the only answer, and so may its last digits be.
     """
     system = KINDS[kind]
     rng = np.random.default_rng(5)
@@ -154,7 +154,7 @@ def test_only_what_is_asked_for_is_there(name):
 
 
 @pytest.mark.parametrize("name", OUTPUTS)
-def test_what_is_not_resolved_says_why_whatever_is_asked_for(name):
+def test_unresolved_cells_have_a_status_whatever_the_outputs(name):
     """r = 1/2 undamped is marginal, r = 0 has no number of stops."""
     axes = [0.0, 0.5, 1.5], [0.2, 0.8], [1.0, 1.5]
     asked = fm.sweep(fm.System(), *axes, outputs=[name])
@@ -235,7 +235,7 @@ def test_numbers_in_any_dress():
     assert not np.signbit(minus.r.values).any()
 
 
-def test_settings_beside_a_solver_take_the_place_of_its_own():
+def test_settings_replace_those_of_a_solver():
     solver = fm.Solver(cycles=50, outputs=["regime", "cycles"])
     cell = ([0.9], [0.7], 1.5)
     assert set(fm.sweep(fm.System(), *cell, solver=solver).data_vars) >= {"regime", "cycles"}

@@ -81,7 +81,7 @@ def test_trouble_names_the_file_that_the_user_named(tiny, tmp_path, monkeypatch,
         storage.write(tiny, Path("out.nc"))
 
 
-def test_the_old_file_is_there_until_the_new_one_is_whole(tiny, tmp_path, monkeypatch):
+def test_the_old_file_is_there_until_the_new_one_is_complete(tiny, tmp_path, monkeypatch):
     path = tmp_path / "out.nc"
     path.write_bytes(b"old")
     original = xr.Dataset.to_netcdf

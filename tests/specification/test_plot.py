@@ -277,7 +277,7 @@ def test_fills_of_boundaries_are_true(contact, start, mu):
     assert all(fills[name].any() for name in POSSIBLE)
 
 
-def test_legends_of_boundaries_say_what_is_certain_and_what_is_possible(tiny_boundaries):
+def test_legends_of_boundaries_state_what_is_certain_and_what_is_possible(tiny_boundaries):
     certain = words_of(fm.plot_boundaries(tiny_boundaries.sel(mu=[1.0])))
     assert certain[:3] == ["continuous", "stick-slip", "permanent sticking"]
     possible = words_of(fm.plot_boundaries(tiny_boundaries))
@@ -513,7 +513,7 @@ def test_logarithmic_grids_have_logarithmic_axes():
     assert (ax.get_xscale(), ax.get_yscale()) == ("log", "linear")
 
 
-def test_the_caption_tells_the_system(tiny_map, tiny_boundaries, tiny_response):
+def test_the_caption_describes_the_system(tiny_map, tiny_boundaries, tiny_response):
     for axes, ds in (
         (fm.plot_regimes(tiny_map), tiny_map),
         (fm.plot_boundaries(tiny_boundaries), tiny_boundaries),
@@ -524,7 +524,7 @@ def test_the_caption_tells_the_system(tiny_map, tiny_boundaries, tiny_response):
     assert "no viscous damping" in heading
 
 
-def test_the_caption_tells_the_start_and_the_axis_the_features(tiny_map):
+def test_the_caption_states_the_start_and_the_axis_the_features(tiny_map):
     """As far as the configuration in the file contains them."""
     configured = tiny_map.assign_attrs(config='[system]\n[solver]\nstart = "moving"')
     axes = fm.plot_regimes(configured)
@@ -537,7 +537,7 @@ def test_the_caption_tells_the_start_and_the_axis_the_features(tiny_map):
     assert not [line for line in axes[1].lines if line.get_linestyle() == "None"]
 
 
-def test_large_maps_say_how_they_are_reduced():
+def test_large_maps_state_how_they_are_reduced():
     (ax,) = fm.plot_regimes(synthetic(np.full((1500, 10), 2.0)))
     heading = ax.figure.legends[0].get_title().get_text().replace("\n", " ")
     assert "cells that share a pixel show the most frequent class" in heading

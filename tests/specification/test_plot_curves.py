@@ -251,7 +251,7 @@ def test_open_circles_are_points_that_friction_leaves_alone(two):
     assert np.abs(circles[:, 0] - np.sqrt(2.0)).min() < 1e-9
 
 
-def test_captions_say_what_is_cut_off_and_which_peaks_are_finite(wall):
+def test_captions_state_what_is_cut_off_and_which_peaks_are_finite(wall):
     axes = fm.plot_curves(wall, "amplitude")
     assert axes[0].get_ylim() == (0.0, 5.0)
     caption = caption_of(axes)
@@ -280,7 +280,7 @@ def test_amplitudes_may_have_a_logarithmic_axis(two):
         fm.plot_curves(two, "harmonics", log=True)
 
 
-def test_harmonics_are_drawn_beside_the_first(wall):
+def test_harmonics_are_drawn_relative_to_the_first(wall):
     axes = fm.plot_curves(wall, "harmonics")
     assert [ax.get_title() for ax in axes] == ["mass 1, β = 0.2", "mass 1, β = 0.6"]
     for k, ax in enumerate(axes):

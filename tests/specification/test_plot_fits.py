@@ -112,7 +112,7 @@ def test_the_curve_moves_as_the_equation_has_it(truth):
         ({}, "envelope: friction and viscous damping"),
     ],
 )
-def test_the_legend_says_what_the_envelope_is(known, words):
+def test_the_legend_names_the_envelope(known, words):
     ds = fm.identify.free_decay(*synthetic(MIXED, 1), known=known)
     axes = fm.plot_fit(ds)
     assert words in words_of(axes)
@@ -120,7 +120,7 @@ def test_the_legend_says_what_the_envelope_is(known, words):
     rendered(axes)
 
 
-def test_the_caption_tells_estimates_verdict_and_whether_residuals_are_white(datasets):
+def test_the_caption_states_estimates_verdict_and_whether_residuals_are_white(datasets):
     ds = datasets["decay"]
     words = caption_of(fm.plot_fit(ds))
     for name in ds.parameter.values:
@@ -132,7 +132,7 @@ def test_the_caption_tells_estimates_verdict_and_whether_residuals_are_white(dat
     assert "no more than chance makes (0.07)" in words  # 2/sqrt(800)
 
 
-def test_coloured_residuals_are_told():
+def test_coloured_residuals_are_reported():
     time, x = synthetic(MIXED._replace(noise=0.0), 1)
     noise = np.random.default_rng(2).normal(0.0, 0.02, x.size)
     ds = fm.identify.free_decay(time, x + noise + np.roll(noise, 1))  # lag-1 correlation 1/2

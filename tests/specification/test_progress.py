@@ -86,7 +86,7 @@ def test_elsewhere_there_is_a_line_at_the_start_and_one_at_the_end(monkeypatch):
                          "frictionmap: 2 of 3 maps  about 21 s left", "frictionmap: a page done in 60 s"]),
     ],
 )  # fmt: skip
-def test_parts_are_told_one_by_one(monkeypatch, stream, wanted):
+def test_progress_of_parts_is_shown_one_by_one(monkeypatch, stream, wanted):
     clock = Clock(monkeypatch)
     monkeypatch.setattr(sys, "stderr", stream)
     with Progress("a page", quiet=False, parts="maps") as shown:
@@ -231,7 +231,7 @@ def test_yes_overrides(tmp_path, monkeypatch):
     assert main(["map", "small.toml", "--overwrite"]) == 0
 
 
-def test_the_cost_of_many_cells_is_told_before_the_work(tmp_path, monkeypatch, capsys):
+def test_the_cost_of_many_cells_is_stated_before_the_work(tmp_path, monkeypatch, capsys):
     from frictionmap.command_line import cli
 
     monkeypatch.chdir(tmp_path)

@@ -89,7 +89,7 @@ def test_a_response_is_of_its_cell(tmp_path):
     assert config.solver == fm.Solver(start="moving")
 
 
-def test_histories_say_when_and_what():
+def test_histories_state_time_and_command():
     made = {
         "sweep": fm.sweep(fm.System(), np.linspace(0.6, 2.0, 8), [0.1, 0.2], 1.5),
         "boundaries": fm.boundaries(fm.System(), [0.6, 0.7]),

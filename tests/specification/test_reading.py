@@ -172,7 +172,7 @@ OLDER = {
 
 
 @pytest.mark.parametrize("kind", OLDER)
-def test_older_names_are_kept_beside_the_current_ones(files, kind):
+def test_older_names_are_kept_with_the_current_ones(files, kind):
     with xr.open_dataset(files[kind]) as ds:
         for old, new in OLDER[kind].items():
             assert ds[old].dtype == ds[new].dtype
@@ -341,7 +341,7 @@ def test_malformed_files_are_read_or_refused(files, kind, family):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_flipped_bit_of_an_axis_is_seen(datasets, files, kind, tmp_path):
-    """Where the axis lies in the file it is not compressed; a changed value may well be a legal one."""
+    """Where the axis lies in the file it is not compressed; a changed value may well be a valid one."""
     content = files[kind].read_bytes()
     axis = datasets[kind]["tau" if kind == "response" else "r"].values.tobytes()
     place = content.index(axis)

@@ -16,7 +16,7 @@ TRUTH = Truth(3.13, 0.01, 0.8, 1.0, -0.1, 1.001, (0.1, 1.8j, 0.02), rate=100.0, 
 
 @pytest.fixture(scope="module")
 def measured_record():
-    """Times, base and mass, with two stops a cycle."""
+    """Times, base and mass, with two stops per cycle."""
     return synthetic(TRUTH, steady(TRUTH), 4)
 
 
@@ -84,7 +84,7 @@ def test_a_late_channel_is_named_in_the_report_and_can_be_held(rig, capsys, meas
 
 
 def test_units_of_the_columns(rig, measured_record):
-    """Lengths come in the unit of the mass, what is known is given in mm."""
+    """Lengths come in the unit of the mass, known values are given in mm."""
     time, base, x = measured_record
     path = rig((1e3 * time, 1e3 * base, 1e-3 * x), "x_F = 0.8", "time_ms,base_um,x_m")
     assert main(["identify", str(path), "--quiet"]) == 0
@@ -120,7 +120,7 @@ def test_accelerations_and_velocities(rig, capsys, unit, order, size):
     assert found["beta"] == pytest.approx(TRUTH.x_F / 1.8, abs=0.005)
 
 
-def test_noise_that_integration_amplifies_is_told(rig, capsys, measured_record):
+def test_noise_that_integration_amplifies_is_reported(rig, capsys, measured_record):
     """A noisy accelerometer on the mass, a displacement of the base, in a window."""
     motion = steady(TRUTH)
     time, base, _ = measured_record

@@ -248,7 +248,7 @@ def test_what_is_no_store_is_left_alone(tmp_path):
 
 
 def test_a_stop_while_a_store_is_replaced(tmp_path, monkeypatch):
-    """What is left of the old one is not taken for the new one, which may be of the same configuration."""
+    """Remains of the old one are not taken for the new one, which may be of the same configuration."""
     asked, path = study(ONE, 300), tmp_path / "map.zarr"
     fill_store(path, asked, "map", in_this_process(1))
     fill_store(tmp_path / "well.zarr", asked, "map", in_this_process(1))
@@ -502,7 +502,7 @@ def test_workers_that_come_later_have_work(tmp_path, monkeypatch):
     same_files(path, tmp_path / "well.zarr")
 
 
-def test_workers_start_beside_another_cluster():
+def test_workers_start_next_to_another_cluster():
     """Dask's usual port is taken; a warning would be an error here."""
     pytest.importorskip("distributed")
     from frictionmap.stores.workers import _cluster

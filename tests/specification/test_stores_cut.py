@@ -131,7 +131,7 @@ def test_a_store_is_gone_on_with_by_its_own_cut(tmp_path):
 def test_workers_are_interrupted_without_a_word_of_theirs(tmp_path, to):
     """At random moments; blocks that were done are kept.
 
-    Another number of workers goes on with them, which does not depend on who was told to stop.
+    Another number of workers resumes with them, whichever worker was stopped.
     """
     pytest.importorskip("distributed")
     (tmp_path / "map.toml").write_text(CONFIG)

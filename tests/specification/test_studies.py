@@ -137,7 +137,7 @@ def test_malformed_files_are_refused_in_one_line(files, tmp_path, capsys, change
     assert told.count("\n") == 1
 
 
-def test_what_is_beside_an_axis_is_told_if_it_is_numbers_or_text(files, tmp_path, capsys):
+def test_info_lists_further_coordinates_of_numbers_or_text(files, tmp_path, capsys):
     path = tmp_path / "named.nc"
     with xr.open_dataset(files[".nc"]) as ds:
         beside = {"who": ("sample", ["a", "b", "c"]), "good": ("sample", [True, False, True])}
@@ -169,7 +169,7 @@ def test_shares_of_a_cut(files, tmp_path, end, cut):
 
 
 @pytest.mark.parametrize("end", [".nc", ".zarr"])
-def test_shares_tell_their_system(files, end):
+def test_shares_name_their_system(files, end):
     found = read_shares(files[end], "sample", {"damping_ratios": 0.05})
     assert found.attrs["title"] == "Study, damping_ratios = 0.05"
     assert "modal damping ratios 0.05; varied: mass_ratios, stiffness_ratios" in found.attrs["system"]
@@ -186,7 +186,7 @@ def test_a_point_of_a_slice(files, tmp_path, capsys):
     assert "6 cells (" in capsys.readouterr().out
 
 
-def test_a_store_beyond_memory_is_told(tmp_path, capsys, monkeypatch):
+def test_info_describes_a_store_larger_than_memory(tmp_path, capsys, monkeypatch):
     from frictionmap import checks
 
     path = tmp_path / "study.toml"
@@ -219,7 +219,7 @@ def test_export(files, tmp_path):
     assert main(["export", str(files[".nc"]), *cut, "-o", str(tmp_path / "cut.txt")]) == 2
 
 
-def test_unfinished_blocks_are_told_and_drawn_as_such(files, tmp_path, capsys):
+def test_unfinished_blocks_are_reported_and_drawn_as_such(files, tmp_path, capsys):
     path = tmp_path / "part.zarr"
     shutil.copytree(files[".zarr"], path)
     arrays = zarr.open_group(path, mode="r+")
@@ -238,7 +238,7 @@ def test_unfinished_blocks_are_told_and_drawn_as_such(files, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("error", [KeyError("nu"), OSError("no room"), MemoryError(), TypeError("text")])
-def test_an_error_beside_an_open_file_is_not_put_on_the_file(files, error):
+def test_another_error_while_a_file_is_open_is_not_blamed_on_the_file(files, error):
     def fails_after_reading():
         with opened(files[".zarr"]) as ds:
             assert ds["regime"].values.any()
@@ -249,7 +249,7 @@ def test_an_error_beside_an_open_file_is_not_put_on_the_file(files, error):
     assert raised.value is error
 
 
-def test_a_damaged_chunk_is_told_where_it_is_read(files, tmp_path):
+def test_a_damaged_chunk_is_reported_where_it_is_read(files, tmp_path):
     path = tmp_path / "cut.zarr"
     shutil.copytree(files[".zarr"], path)
     for chunk in (path / "regime" / "c").rglob("[0-9]"):
@@ -446,7 +446,7 @@ def test_shares_as_a_file(samples, tmp_path, capsys):
         assert told == expected.transpose("mu", "r", "beta").values.ravel().tolist()
 
 
-def test_numbers_beside_an_axis_are_told_from_least_to_most(samples, tmp_path, capsys):
+def test_info_gives_the_range_of_further_coordinates(samples, tmp_path, capsys):
     write(samples, tmp_path / "samples.nc")
     assert main(["info", str(tmp_path / "samples.nc")]) == 0
     values = samples["mass_ratios_2"].values

@@ -136,14 +136,14 @@ def test_causes_end_the_output_of_map(tmp_path, capsys, monkeypatch):
     assert capsys.readouterr().out.splitlines()[-2:] == causes
 
 
-def test_a_map_without_causes_says_nothing_of_them():
+def test_a_map_without_causes_does_not_mention_them():
     ds = fm.sweep(fm.System(), [0.8, 1.5], [0.2, 2.0])
     assert describe_causes(ds) == []
     assert "status" not in ds
     assert describe_map(ds) == "4 cells (2 permanent sticking, 2 continuous)"
 
 
-def test_what_a_file_says_cannot_move_the_cursor(datasets):
+def test_texts_of_a_file_cannot_move_the_cursor(datasets):
     ds = datasets["map"].assign_attrs(title="two\nlines \x1b[2J", system="x" * 5000)
     text = describe_file(ds)
     assert text.splitlines()[0] == "two lines ?[2J [map]"

@@ -358,7 +358,7 @@ def test_bad_systems_that_a_configuration_cannot_have(settings, words):
 
 
 class Harm:
-    """What loading a pickle would do."""
+    """Code that loading a pickle runs."""
 
     def __reduce__(self):
         return (print, ("a program has run",))

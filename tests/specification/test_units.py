@@ -1,4 +1,4 @@
-"""Units: what a careful person expects of hertz and newtons, to the bit; what is no quantity is refused."""
+"""Units: what a careful person expects of hertz and newtons, to the bit; other texts are refused."""
 
 import math
 import re
@@ -121,7 +121,7 @@ def test_a_ratio_is_typed_as_a_frequency_with_the_fewest_digits(r, one):
 
 
 @given(number=st.decimals("0.001", 10000, places=6), one=st.decimals("0.001", 10000, places=3))
-def test_what_was_typed_is_told_again(number, one):
+def test_typed_numbers_are_shown_as_typed(number, one):
     r = float(Fraction(number) / Fraction(one))
     assert typed(np.array([r]), Fraction(one))[0] == float(number)
 
@@ -418,7 +418,7 @@ def test_without_units_nothing_changes(mapped):
     assert_same_numbers(own, plain)
 
 
-def test_what_a_map_has_beside(mapped):
+def test_coordinates_and_variables_of_a_map_in_units(mapped):
     assert mapped.frequency.values.tolist() == [1.05, 4.2]
     assert mapped.friction_force.values.tolist() == [1.0, 2.5]
     assert (mapped.frequency.dims, mapped.frequency.units) == (("r",), "Hz")
@@ -662,7 +662,7 @@ def test_maps_have_axes_in_hertz_and_newtons(mapped):
     assert not [child for ax in fm.plot_regimes(plain) for child in ax.child_axes]
 
 
-def test_logarithmic_axes_have_logarithmic_ones_beside():
+def test_logarithmic_axes_have_logarithmic_second_axes():
     r = np.geomspace(0.1, 10.0, 9)
     (ax,) = fm.plot_boundaries(fm.boundaries(BASE, r, units=MIXED))
     assert ax.get_xscale() == "log"

@@ -119,7 +119,7 @@ def write_rigs(folder: Path, seed: int = 1) -> None:
         (folder / name).write_text(text, encoding="utf-8", newline="\n")
 
 
-#: Title of each configuration, and what it says beside the kind and the file.
+#: Title of each configuration, and its tables in addition to the kind and the file.
 _CONFIGURATIONS = {
     "free-decay": (
         "One storey of a frame, pulled aside and let go",

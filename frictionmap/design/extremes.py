@@ -11,11 +11,11 @@ _ASIDE = 0.06
 #: Shares of a bracket that begins at its largest value.
 _FROM_AN_END = (0.02, 0.1, 0.3, 0.6)
 
-#: Rounds, at most.  A smooth maximum needs about five; what is not found then lies at a kink or a jump, and
-#: that side of its bracket is cut into this many parts.
+#: Rounds, at most.  A smooth maximum needs about five; one that is not found then lies at a kink or a jump,
+#: and that side of its bracket is cut into this many parts.
 _ROUNDS, _SMOOTH_ROUNDS, _PARTS = 60, 6, 13
 
-#: A maximum that is not the largest of its group is left if it cannot reach that with so many of its rises.
+#: A maximum is dropped if the largest of its group is above it by more than this multiple of its rise.
 _RISE = 4.0
 
 #: A bracket ends where its values differ by less than this: of a smooth maximum the square of it is lost.

@@ -21,8 +21,8 @@ _POLE = 1e-9
 #: beta_lim below this share of its largest value is 0: the frequency of a pole without damping is rounded.
 _LOST = 4.0 * float(np.finfo(float).eps)
 
-#: A local extremum may be above its sample by so many times the step to the lower neighbour of that: by an
-#: eighth if the curve is smooth, by a half at a kink between two lines, by 1.4 at the tip of a square root.
+#: A local extremum may be above its sample by this multiple of the step to the lower neighbour: by an eighth
+#: if the curve is smooth, by a half at a kink between two lines, by 1.4 at the tip of a square root.
 _RISE = 2.0
 
 

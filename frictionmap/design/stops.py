@@ -41,7 +41,7 @@ _CLOSE = 1e-3
 #: Of a turn: multiples of it are spread evenly.
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 
-#: Frequencies are refined from so many of the lowest ones, between their neighbours, in so many rounds.
+#: Number of lowest frequencies that are refined, between their neighbours, and number of rounds.
 _LOWEST_OF, _ROUNDS = 3, 4
 
 

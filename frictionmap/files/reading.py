@@ -118,7 +118,7 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
         options = {"engine": "zarr", "consolidated": False, "chunks": None}
     damaged = _damaged_store if store else _damaged
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of a malformed file; what is wrong with it is said below
+        warnings.simplefilter("ignore")  # of a malformed file; its error is reported below
         if store:
             _check_described(path)
         try:

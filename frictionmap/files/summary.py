@@ -216,7 +216,7 @@ def _named(variable: xr.DataArray, further: Sequence[str] = ()) -> str:
     own = [str(dim) for dim in variable.dims if dim not in further]
     dims = f"({', '.join(own if len(own) == variable.ndim else ['...', *own])})"
     begin = f"  {variable.name!s:<{_INDENT - 3}} {dims:<16} "
-    meaning = _printable(str(variable.attrs.get("long_name", "")))  # what is not ours may have none
+    meaning = _printable(str(variable.attrs.get("long_name", "")))  # foreign variables may have none
     return (begin + textwrap.shorten(meaning, _WIDTH - len(begin), placeholder="...")).rstrip()
 
 

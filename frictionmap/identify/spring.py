@@ -16,7 +16,7 @@ from .statistics.least_squares import Errors
 #: Compliances between which motions are computed: a stiffer spring counts as rigid, a softer one as none.
 STIFFEST, SOFTEST = 1e-4, 1e3
 
-#: A mass that a spring in the contact holds may lead a base that has a damper, by so many degrees.
+#: A mass that a spring in the contact holds may lead a base that has a damper, by up to this many degrees.
 LEAD = 20.0
 
 

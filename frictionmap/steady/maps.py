@@ -29,7 +29,7 @@ TILE = 1024
 #: Cells per job that are filled by closed form.
 ROW_CELLS = 262144
 
-#: Approximate cost of a cell, in hundredths of one that is integrated: decided by a formula; integrated;
+#: Approximate cost of a cell, in hundredths of an integrated one: decided by a formula; integrated;
 #: searched for further regimes, with mu = 1 and with mu > 1.
 _DECIDED, FOLLOWED, SEARCHED_UNIQUE, SEARCHED = 2, 100, 25, 800
 

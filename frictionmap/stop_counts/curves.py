@@ -28,7 +28,7 @@ class _Map(NamedTuple):
 _UNIQUE = (_Map(160, 160, True), _Map(400, 400, True), _Map(2000, 500, False))
 _SEVERAL = (_Map(160, 160, True), _Map(160, 160, True, "moving"), _Map(400, 400, True))
 
-#: Seeds for mu > 1 are alike within this relative distance in r and beta.  Numbers of stops are whole, but
+#: Seeds for mu > 1 are alike within this relative distance in r and beta.  Numbers of stops are integers,
 #: stored in single precision.
 _ALIKE_SEEDS, _WHOLE = 0.01, 1e-5
 

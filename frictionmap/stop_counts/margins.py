@@ -145,7 +145,7 @@ def _end_margins(phases: Phases, sequence: Sequence, motion: Motion) -> list[Mar
 
 
 def violation(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> float:
-    """How much an orbit is not what it says, relative: 0 if it is."""
+    """Relative violation of the consistency of an orbit: 0 if it is consistent."""
     times = unknowns[:-2]
     edges = np.concatenate(([sequence.start], times, [sequence.end]))
     if (np.diff(edges) <= 0.0).any() or unknowns[-1] <= 0.0 or unknowns[-2] <= 0.0:
@@ -175,5 +175,5 @@ def violation(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> float
 
 
 def is_physical(phases: Phases, sequence: Sequence, unknowns: np.ndarray) -> bool:
-    """Whether an orbit is what it says."""
+    """Whether an orbit is consistent."""
     return violation(phases, sequence, unknowns) <= _ROUNDING

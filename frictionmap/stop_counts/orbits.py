@@ -2,7 +2,7 @@
 
 An orbit returns to its state, or to its mirror image, after `half_periods` of the load.  It begins in the
 middle of its longest piece, at `start`; between the events its pieces have senses (+1, -1: slides, 0: a
-stop).  Events are forced to be where they are said to be, so all equations go on beyond a border.
+stop).  Events are imposed at the given phases, so all equations continue beyond a border.
 """
 
 from typing import NamedTuple
@@ -13,7 +13,7 @@ from .phases import Affine, Drive, Phases
 
 
 class Sequence(NamedTuple):
-    """Senses of the pieces, the first of which goes on as the last, mirrored if `mirrored`."""
+    """Senses of the pieces, the first of which continues the last, mirrored if `mirrored`."""
 
     senses: tuple[int, ...]
     start: float
@@ -110,7 +110,7 @@ def inside(phases: Phases, sequence: Sequence, motion: Motion, piece: int, tau: 
 
 
 def events(phases: Phases, sequence: Sequence, motion: Motion) -> list[np.ndarray]:
-    """What a motion leaves of the equations of its events: z' at ends of slides, forces at ends of stops."""
+    """Residuals of the equations of the events of a motion: z' at ends of slides, forces at ends of stops."""
     found = []
     for k in range(sequence.events):
         state, tau = motion.states[k + 1], motion.times[k + 1]

@@ -33,13 +33,13 @@ _INSIDE = 1e-5
 #: Steps are chosen for it, and repeated if it is exceeded by a factor, unless they are short.
 _TURNED, _EXCEEDED, _SHORT = 1e-4, 3.0, 1e-3
 
-#: Turns of a curve in r are found to this component of the tangent, in so many steps at most.
+#: Turns of a curve in r are found to this component of the tangent; largest number of steps.
 _VERTICAL, _SECANTS = 1e-9, 8
 
-#: Points closer than this to others are not kept, but for the ends.
+#: Points closer than this to others are not kept, except for the ends.
 _APART = 5e-4
 
-#: So many steps in sequence below this length are the end of a curve: its equations become singular there.
+#: A curve ends after this many steps in sequence below this length: its equations become singular there.
 _CRAWLS, _CRAWL = 20, 1e-4
 
 #: Points of a curve in one direction, at most.
@@ -126,7 +126,7 @@ def centred(place: Place) -> Place:
     moved = np.concatenate((times[longest:], times[:longest] + turn))
     start = float(begins[longest] + 0.5 * lengths[longest])
     piece, sign, tau = condition.piece, condition.sign, unknowns[count:-2]
-    if condition.inside and piece == count:  # goes on as the first piece
+    if condition.inside and piece == count:  # continues as the first piece
         piece, sign, tau = 0, back * sign, tau - turn
     if piece < longest:
         piece, sign, tau = piece + count, back * sign, tau + turn
@@ -211,7 +211,7 @@ def _without_stop(sequence: Sequence, unknowns: np.ndarray, k: int) -> tuple[Seq
 
 
 def is_on_border(phases: Phases, place: Place) -> bool:
-    """Whether the orbit of a point is what it says, and the border's own event is inside its piece."""
+    """Whether the orbit of a point is consistent, and the border's own event is inside its piece."""
     sequence, condition, unknowns = place
     if condition.inside and not _is_inside(sequence, condition, unknowns):
         return False

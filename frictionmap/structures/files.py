@@ -50,7 +50,7 @@ def read_files(given: object) -> GivenMatrices:
     Raises
     ------
     InputError
-        A file cannot be read, or is not what it says; an array is missing or has an unknown name.
+        A file cannot be read, or does not match its ending; an array is missing or has an unknown name.
     """
     if isinstance(given, (str, os.PathLike)):
         return _from_path(Path(given))

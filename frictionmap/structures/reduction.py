@@ -17,7 +17,7 @@ _MORE = 8
 _STEP = 1.25
 
 #: Smallest number of modes of the reduction used for comparison.  Structures with fewer are compared as a
-#: whole, which is exact.  So many take below a millisecond per frequency.
+#: whole, which is exact.  This number takes below a millisecond per frequency.
 _LEAST_REFINED = 100
 
 
@@ -55,7 +55,7 @@ class Reduction:
         modes = min(max(2 * self.asked.modes, _LEAST_REFINED), self.most_modes)
         if modes <= self.asked.modes:
             return None
-        asked = self.asked._replace(modes=modes, allow=1.0)  # it is compared with, and not held to anything
+        asked = self.asked._replace(modes=modes, allow=1.0)  # for comparison only, without a limit
         return reduce_structure(self.structure, asked, self.kept, self.contact, self.base)
 
     def checked(self, low: float, high: float) -> Accuracy:

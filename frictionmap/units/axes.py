@@ -49,7 +49,7 @@ def ratios(values: Any, name: str, kind: str, scales: Scales) -> Any:
         found = quantities(values, name, kind)
     except InputError:
         if scales is NO_SCALES and isinstance(values, (str, list, tuple)):
-            return values  # for the checks of numbers without units, which say what is wrong
+            return values  # for the checks of numbers without units, which report the error
         raise
     if found is None:
         return values

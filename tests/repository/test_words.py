@@ -321,10 +321,10 @@ def test_docstrings_and_messages(part):
 
 @pytest.mark.parametrize("part", package_parts())
 def test_further_texts(part):
-    """Labels of variables, comments in files, lines that are printed."""
+    """Labels of variables, comments in files, lines that are printed; comments of the code."""
     for path in checked(files_of(part)):
         tree = ast.parse(path.read_text(encoding="utf-8"))
-        assert not report(findings(texts_within(tree, path.relative_to(ROOT))))
+        assert not report(findings([*texts_within(tree, path.relative_to(ROOT)), *comments(path)]))
 
 
 @pytest.mark.parametrize("part", package_parts())

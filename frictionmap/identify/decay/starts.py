@@ -19,7 +19,7 @@ _DAMPINGS = (0.0, 0.01, 0.03, 0.1, 0.2, 0.35, 0.6)
 #: where this many in a row fit no better.
 _HIDDEN = 8
 
-#: So many of the last turning points that were found may be noise.
+#: Number of the last turning points found that may be noise.
 _DOUBTED = 2
 
 #: Samples by which starts are compared, and by which they are improved; a fit takes all samples.

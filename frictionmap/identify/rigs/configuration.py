@@ -27,7 +27,7 @@ from .record import RECORD
 from .rig import KNOWN_UNITS, Kind, Rig
 from .sweep import SWEEP
 
-#: What is known of every kind of data.
+#: Description of every kind of data.
 KINDS = {"free-decay": FREE_DECAY, "forced": FORCED, "record": RECORD, "sweep": SWEEP}
 
 

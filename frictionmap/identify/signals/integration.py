@@ -18,8 +18,8 @@ from .phasors import SAMPLES_OF_HIGHEST, harmonics_at, phasors_of
 from .plateaus import unclipped
 from .samples import checked_record
 
-#: Harmonics of a record, at most.  An acceleration jumps where
-#: friction changes sign: harmonics that are left out would leak into the others where cycles are not whole.
+#: Largest number of harmonics of a record.  An acceleration jumps where friction changes sign: without whole
+#: cycles, harmonics that are left out would leak into the others.
 _HARMONICS = 40
 
 #: Lines below this share of the base's frequency are left out.
@@ -146,7 +146,7 @@ def _harmonics(
     """Complex harmonics 0 to H by least squares, with a drift, and the residual."""
     angle = np.multiply.outer(2.0 * np.pi * frequency * t, np.arange(1, harmonics + 1))
     columns = np.column_stack((np.ones_like(t), t / np.ptp(t), np.cos(angle), np.sin(angle)))
-    # squares of the columns will do: harmonics of one frequency are all but orthogonal
+    # squares of the columns suffice: harmonics of one frequency are nearly orthogonal
     found = np.linalg.lstsq(columns.T @ columns, columns.T @ values, rcond=None)[0]
     phasors = np.concatenate((found[:1], found[2 : 2 + harmonics] - 1j * found[2 + harmonics :]))
     return phasors, values - columns @ found

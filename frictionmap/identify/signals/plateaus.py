@@ -17,8 +17,8 @@ from .turning_points import noise_level, resolution
 #: Samples in a row at an extreme value that can be clipped.
 _FLAT = 3
 
-#: Distance from the extreme over which the curve follows a motion: so many steps of the resolution, standard
-#: deviations of the noise, or this share of the range, so that none of them bends it; at most half the range,
+#: Distance from the extreme over which the curve follows a motion: multiples of the resolution, of the standard
+#: deviation of the noise, or this share of the range, so that none of them bends it; at most half the range,
 #: where a sine changes its curvature.
 _STEPS, _DEVIATIONS, _SHARE, _MOST_SHARE = 40.0, 8.0, 0.02, 0.5
 

@@ -16,10 +16,10 @@ _SMALL_CHANGES, _MULTIPLES = (0.25, 0.1, 0.05, 0.02), 8
 #: part of the step.  Of changes that are no multiples a fifth do.
 _MOST, _ENOUGH, _DEVIATION = 0.9, 20, 0.1
 
-#: Swings by which the number of samples a cycle is judged: so large that no usual noise makes one.
+#: Swings that count for the number of samples per cycle, over the range: noise does not reach this.
 _LARGE = 0.2
 
-#: Samples a cycle; with fewer, a turning point is not seen between two of them.
+#: Samples per cycle; with fewer, a turning point is not seen between two of them.
 _LEAST_SAMPLES = 8
 
 #: Length of a gap between two samples, in usual steps.

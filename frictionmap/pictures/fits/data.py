@@ -15,7 +15,7 @@ from ..panels import Handle
 #: With more samples, error bars would hide them: the band beside the residuals shows the error instead.
 _MOST_BARS = 120
 
-#: Lag-1 correlations within so many standard errors, each 1/sqrt(samples), are no more than chance makes.
+#: Lag-1 correlations within this many standard errors, each 1/sqrt(samples), are not significant.
 _CHANCE = 2.0
 
 #: Amplitudes whose logarithms are larger have no place on an axis of doubles.

@@ -19,7 +19,7 @@ from ..panels import Handle, distinct, halo, patch
 #: Cells of the map each way: of one mass, and of structures, whose cells take longer.
 _CELLS, _CELLS_OF_STRUCTURES = (150, 120), (70, 50)
 
-#: The map reaches so many times farther than the motions, and at least so far.
+#: The map extends beyond the motions by this factor, and at least to these values.
 _ABOVE, _LEAST_R, _LEAST_BETA = 1.15, 1.0, 1.2
 
 

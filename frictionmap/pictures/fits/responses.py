@@ -24,7 +24,7 @@ _MARKERS = {_AMPLITUDE: "o", LAG: "^"}
 #: Height of a panel [inch].
 _HEIGHT = 2.5
 
-#: Axes reach beyond the data by this factor in amplitude, and by so many degrees.
+#: Axes reach beyond the data by this factor in amplitude, and by this many degrees.
 _ABOVE, _ROOM = 1.3, 10.0
 
 #: Amplitudes that differ by more than this have a logarithmic axis.

@@ -20,7 +20,7 @@ _POINTS = 2001
 #: Room beside the data, as a share of their span.
 _MARGIN = 0.04
 
-#: The curve is infinite, and zero, within the axis: it ends so many times beyond the data.
+#: The curve is infinite, and zero, within the axis: its ends are beyond the data by this factor.
 _BEYOND = 4.0
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 #: Valid durations [s] and numbers of frames per second.
 _SECONDS, _RATES = (0.1, 600.0), (1.0, 120.0)
 
-#: Colours of the light of a contact that is stuck, and of one that slides.
+#: Colours of the light of a stuck contact, and of a sliding one.
 _STUCK, _SLIDING = "#f2a900", "white"
 
 #: Size of the masses and of the lights [points].

@@ -30,8 +30,8 @@ _AROUND = np.linspace(0.5, 1.5, 21)
 _AGAIN = 5
 
 #: Whether anything moves where everything holds, and whether nothing does with less friction already, is
-#: looked at with these multiples of the friction that holds.  Motion grows with the square of what is
-#: missing: this much less leaves 1e-10, which is above rounding.
+#: looked at with these multiples of the friction that holds.  Motion grows with the square of the
+#: friction removed: this much less leaves 1e-10, which is above rounding.
 _ABOVE, _BELOW = 1.01, 1.0 - 1e-5
 
 #: Another minimum is reported up to this multiple of the best one.

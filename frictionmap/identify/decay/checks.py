@@ -16,8 +16,8 @@ from ..signals.turning_points import (
 )
 from ..statistics.levels import MISFIT, MISFIT_SHARE
 
-#: Correlated noise swings farther than that between samples suggests: turning points are looked for beyond so
-#: many times as much noise, until nearly all of them are half a period apart; but not beyond so few of them.
+#: Correlated noise swings farther than that between samples suggests: turning points are sought beyond
+#: these multiples of the noise, until nearly all of them are half a period apart, but not with fewer points.
 _MORE_NOISE, _MOSTLY_REGULAR, _FEW = (2.0, 3.0, 4.0), 0.9, 5
 
 #: Spikes make turning points that are not half a period apart; noise and a mass that is held make few.
@@ -30,7 +30,7 @@ def checked_turning_points(time: np.ndarray, x: np.ndarray) -> TurningPoints:
     Raises
     ------
     InputError
-        Nothing moves, samples are too few a cycle, there are fewer than 3 extrema, or the amplitude grows.
+        Nothing moves, there are too few samples per cycle or fewer than 3 extrema, or the amplitude grows.
     """
     if float(np.ptp(x)) <= 2.0 * resolution(x):
         raise InputError(

@@ -17,9 +17,9 @@ from .turning_points import noise_level, resolution
 #: Samples in a row at an extreme value that can be clipped.
 _FLAT = 3
 
-#: Distance from the extreme over which the curve follows a motion: multiples of the resolution, of the standard
-#: deviation of the noise, or this share of the range, so that none of them bends it; at most half the range,
-#: where a sine changes its curvature.
+#: Distance from the extreme over which the curve follows a motion: multiples of the resolution, of the
+#: standard deviation of the noise, or this share of the range, so that none of them bends it; at most half
+#: the range, where a sine changes its curvature.
 _STEPS, _DEVIATIONS, _SHARE, _MOST_SHARE = 40.0, 8.0, 0.02, 0.5
 
 #: Samples that a curve takes at least, if they are within the largest distance; fewer than 3 are none.

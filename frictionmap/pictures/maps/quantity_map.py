@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 #: Colours of numbers of both signs, and of angles; others have those of the setting image.cmap.
 _SIGNED, _CYCLIC = "RdBu_r", "twilight"
 
-#: Peaks are cut off above this multiple of the value that all but the share `_BEYOND` of the cells stay below.
+#: Peaks are cut off above this multiple of the value that all but the share `_BEYOND` of cells stay below.
 _PEAK, _BEYOND = 4.0, 0.01
 
 #: Letters per inch of the name of a scale.

@@ -26,7 +26,7 @@ def digest_of(paths: Iterable[Path]) -> Any:
 def state() -> str:
     """Digest of all sources that cells of maps come from, by which stores know who began them.
 
-    Between two versions it is what tells one state of the program from another.
+    Between two versions it distinguishes the states of the program.
     """
     root = Path(__file__).parent
     names = sorted(path.relative_to(root).as_posix() for path in root.rglob("*.py"))

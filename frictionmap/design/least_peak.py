@@ -14,7 +14,7 @@ from .task import Task
 #: Local minima of the samples that are refined: those below this multiple of the lowest one.
 _PROMISING = 2.0
 
-#: Kind of an optimum from which on nothing moves.
+#: Kind of an optimum at or above which nothing moves.
 THRESHOLD = "threshold"
 
 #: Values of the curve that count as one: of a plateau, of two peaks at the optimum.

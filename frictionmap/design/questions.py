@@ -99,8 +99,8 @@ def least_peak(
     xarray.Dataset
         `beta`, the friction ratio; on `peak` the largest responses over frequency there, from the highest
         down (equal ones by frequency), with `peak_r`, `peak_regime` and `peak_stops`; `kind` of the optimum;
-        of a "threshold", from which on nothing moves, the peak is 0, and `at_r`, the frequency that decides,
-        takes the place of these;
+        of a "threshold", at or above which nothing moves, the peak is 0, and `at_r`, the frequency that
+        decides, takes the place of these;
         `second_beta` and
         `second_peak` of another minimum within 5 %; `peak_at_offset`, the response with 2 % and 20 % more and
         less friction; `peak_of_beta` on `beta_search`, the performance curve; `beta_no_stop` and

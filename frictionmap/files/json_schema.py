@@ -1,7 +1,7 @@
 """JSON Schema of configurations, with which editors complete, explain and check them.
 
 It refuses nothing that the program takes.  What needs arithmetic is left to the program: increasing values,
-one number a mass, stop after start, files that are there; and JSON has no difference between 9 and 9.0.
+one number per mass, stop after start, files that are there; and JSON has no difference between 9 and 9.0.
 """
 
 from typing import Any

@@ -38,6 +38,7 @@ BANNED = (
         "per: stops per cycle",
     ),
     (r"(stops?|slides?|turns?|times) in an? (cycle|period)", "per: stops per cycle"),
+    (r"(one|numbers?|few) an? (cycle|period|mode|mass|contact)", "per: one per mode"),
     (r"so many (?!that|as)\w+(?! that)", "the number; or: some"),
     (r"as (they|it) comes?", "leave it out, or name the cases"),
     (r"(will|would|might) do(?! \w)", "suffices, is enough"),

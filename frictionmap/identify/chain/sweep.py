@@ -90,7 +90,7 @@ def sweep(
     xarray.Dataset
         As of `free_decay`.  Parameters of two masses: f1 and f2, the natural frequencies [Hz], f0, that of
         mass 2 on its spring alone, f_k1m1, that of mass 1 on its own, gamma = m_2/m_1, kappa = k_2/k_1; of
-        others f_k1m1, mass_ratio_2.., stiffness_ratio_2..; with damping zeta_1.., one a mode.  On sample:
+        others f_k1m1, mass_ratio_2.., stiffness_ratio_2..; with damping zeta_1.., one per mode.  On sample:
         frequency, mass, `quantity`; data, model and residual are natural logarithms of amplitudes, lags
         [rad].
 

@@ -92,7 +92,7 @@ class Number:
             return given
         values = list(before or ())
         if self.place > len(values):
-            raise self._unknown(len(values))
+            raise self._beyond(len(values))
         values[self.place - 1] = given
         return values
 
@@ -101,21 +101,21 @@ class Number:
         values = list(contacts or ())
         assert self.place is not None
         if self.place > len(values):
-            raise self._unknown(len(values))
+            raise self._beyond(len(values))
         rival = {"force": {"ratio": None}, "ratio": {"force": None}}.get(self.part, {})
         values[self.place - 1] = replace(values[self.place - 1], **{self.part: float(value)}, **rival)
         return values
 
-    def _unknown(self, count: int) -> InputError:
+    def _beyond(self, count: int) -> InputError:
         """Return the error of an index beyond a list with `count` entries."""
         if count == 0:
             return InputError(
-                f"unknown axis {self.text}: the system has no {self.key}; give them in the system"
+                f"cannot use axis {self.text}: the system has no {self.key}; give {self.key} first"
             )
         one, many = _COUNTED.get(self.key, (f"value of {self.key}", f"values of {self.key}"))
         return InputError(
-            f"unknown axis {self.text}: the system has {count} {one if count == 1 else many}; "
-            f"use an index from 1 to {count}"
+            f"cannot use axis {self.text}: the system has {count} {one if count == 1 else many}; "
+            f"use an index <= {count}"
         )
 
 

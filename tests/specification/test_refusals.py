@@ -124,7 +124,7 @@ map good.toml --set 'solver.outputs=["regim"]'
 map good.toml --set 'axes.damping_ratio=[0,0.1]'
     axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity; got 'damping_ratio' (did you mean damping_ratios?)
 map good.toml --set 'axes={"mass_ratios[2]"=[1,2]}'
-    axes, at mass_ratios_2 = 1: unknown axis mass_ratios[2]: the system has 1 mass; use an index from 1 to 1
+    axes, at mass_ratios_2 = 1: cannot use axis mass_ratios[2]: the system has 1 mass; use an index <= 1
 map good.toml --set 'axes={damping_ratios=[]}'
     axes.damping_ratios must have at least one value; got none
 map good.toml --set 'axes={sample={file="none.csv"}}'

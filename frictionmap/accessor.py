@@ -21,7 +21,7 @@ _NAMES = {code.value: code.name.replace("_", "-") for code in regimes.BELT_REGIM
 
 @xr.register_dataset_accessor("frictionmap")
 class FrictionAccessor:
-    """What a dataset of this package shows, in words and pictures.
+    """Summaries and pictures of a dataset of this package.
 
     Parameters
     ----------

@@ -72,7 +72,7 @@ def answer(
 
 
 def _response_in_words(asked: Mapping[str, Any]) -> str:
-    """What the question is about; empty for one about boundaries."""
+    """Describe the response of a question; empty for one about boundaries."""
     return Response(**asked["response"]).describe() if "response" in asked else ""
 
 

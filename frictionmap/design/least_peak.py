@@ -84,7 +84,7 @@ def sampled(task: Task, curve: PerformanceCurve) -> Points:
 
 
 def _kind(points: Points, best: int, peaks: Peaks) -> str:
-    """How the least value at the point `best` of a refined curve comes about."""
+    """Kind of the minimum at the point `best` of a refined curve."""
     if peaks.size.size > 1 and alike(peaks.size[:2], TWO_PEAKS):
         return "two equal peaks"
     return "at the bound" if best in (0, points.beta.size - 1) else "smooth"
@@ -181,7 +181,7 @@ def _threshold(task: Task, curve: PerformanceCurve, share: float = 1.0) -> tuple
 
 
 def _at_rest(beta: float, r: float = np.nan) -> Peaks:
-    """What stands for peaks where there are none; r, the frequency that decides, if it is known."""
+    """A peak of size 0 in place of none; r, the frequency that decides, if it is known."""
     return Peaks(beta, np.array([r]), np.zeros(1))
 
 

@@ -165,7 +165,7 @@ def sampled(task: Task, variations: Variations, *, widen: bool) -> tuple[Task, l
 
 
 def sample_values(tasks: list[Task], curve: SampledPerformance, beta: float) -> dict[str, Any]:
-    """What an answer says about its samples."""
+    """Variables of an answer about its samples."""
     limits = [task.limits() for task in tasks]
     ends = {name: max if name.startswith("beta_stuck") else min for name in limits[0]}
     return {

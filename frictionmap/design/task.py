@@ -45,7 +45,7 @@ class Task:
         return largest_stick(self.system, self.band, None)
 
     def limits(self) -> dict[str, float]:
-        """What an answer says of the band: where it has no stops, and where it sticks.
+        """Values of an answer about the band: friction without stops, and friction that sticks.
 
         With mu > 1 the most friction without a stop whatever the start is a question of its own.
         """

@@ -17,7 +17,7 @@ from ..model.system import System
 
 
 class Compilation(NamedTuple):
-    """What kernels of a group take to compile."""
+    """Compile time and number of kernels of a group."""
 
     seconds: float
     kernels: float
@@ -87,7 +87,7 @@ class CompileTimes:
         self._slowness = 0.0
 
     def expected(self, group: str) -> Compilation:
-        """What the kernels of a group will take."""
+        """Estimate the compilation of a group of kernels."""
         with self._lock:
             if group in self._known:
                 return self._known[group]

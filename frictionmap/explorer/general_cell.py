@@ -124,7 +124,7 @@ def _limits(view: View, r: float) -> dict[str, float]:
 
 
 def _why(beta: float, limits: dict[str, float]) -> list[str]:
-    """Where the cell lies between the boundaries, in a sentence."""
+    """Describe the position of the cell between the boundaries."""
     named = (("β_lim", "beta_lim"), ("β_stick", "beta_stick"), ("β_noslip", "beta_noslip"))
     known = [(symbol, limits[name]) for symbol, name in named if np.isfinite(limits.get(name, np.nan))]
     below = [f"below {symbol} = {value:.4g}" for symbol, value in known if beta < value]
@@ -133,7 +133,7 @@ def _why(beta: float, limits: dict[str, float]) -> list[str]:
 
 
 def _sentence(ds: xr.Dataset, group: Group, j: int, regime: int) -> str:
-    """What one contact does."""
+    """Describe the motion in one contact."""
     elastic = group.stiffness is not None
     words = (_ELASTIC if elastic else _RIGID).get(regime)
     if words is None:

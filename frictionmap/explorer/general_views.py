@@ -56,7 +56,7 @@ def general_quantities(view: View) -> tuple[CellQuantity, ...]:
 
 
 def counted_of(view: View) -> Counted:
-    """What the cells are classified by, and the names of the classes."""
+    """The quantity that classifies the cells, and the names of the classes."""
     elastic, k = general_of(view.system).elastic, chosen(view)
     if k is None:
         return OVERALL_ELASTIC if elastic.any() else OVERALL

@@ -312,7 +312,7 @@ def system_in(text: str) -> System | None:
 
 
 class Common(NamedTuple):
-    """What all configurations of computations have."""
+    """Tables that all configurations of computations have."""
 
     title: str
     system: System

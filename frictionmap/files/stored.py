@@ -42,7 +42,7 @@ def has_equal_friction(ds: xr.Dataset, mu: float) -> bool:
 
 
 def stored_excitation(ds: xr.Dataset) -> str | None:
-    """How the system is loaded: "base", "force" or "forces", see `excitation_of`; None if nothing says.
+    """Excitation of the system: "base", "force" or "forces", see `excitation_of`; None if unknown.
 
     Files made before there was an attribute `excitation` have it in their configuration.
     """

@@ -44,7 +44,7 @@ _PARALLEL = 1e-12
 
 
 class Definition(Protocol):
-    """What is read here of a system: its keys, checked or not yet."""
+    """Keys of a system that are read here, checked or not yet."""
 
     @property
     def contact(self) -> Any: ...
@@ -137,7 +137,7 @@ class Group:
 
 @dataclass(frozen=True)
 class General:
-    """What the general engine needs beyond the structure."""
+    """Data of the general engine in addition to the structure."""
 
     groups: tuple[Group, ...]
     forces: Mapping[int, np.ndarray]  # phasors (n,) of the loads on the masses, by order
@@ -172,7 +172,7 @@ class General:
 
     @property
     def merged(self) -> str:
-        """What was merged, in words; empty if nothing was."""
+        """Describe the contacts that were merged; empty if none were."""
         found = [group.name for group in self.groups if len(group.members) > 1]
         return f"parallel contacts act as one: {'; '.join(found)}" if found else ""
 

@@ -417,7 +417,7 @@ class System:
 
     @property
     def general(self) -> General | None:
-        """What the general engine needs; None for one rigid contact under one harmonic load."""
+        """Data of the general engine; None for one rigid contact under one harmonic load."""
         return self._general
 
     @property

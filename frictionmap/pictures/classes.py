@@ -32,7 +32,7 @@ _AT_ONCE = 1 << 19
 
 
 class Counted(NamedTuple):
-    """What the classes of a map count, and their names."""
+    """The variable that the classes of a map count, and their names."""
 
     variable: str
     events: str
@@ -79,7 +79,7 @@ OVERALL_ELASTIC = _named(
 
 
 def counted(ds: "xr.Dataset") -> Counted:
-    """What the cells of a map are classified by.
+    """The variable that classifies the cells of a map.
 
     Contacts with a spring have slips in place of stops; those of the other kind are NaN.  Several contacts
     together have a regime only.

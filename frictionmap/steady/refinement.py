@@ -39,7 +39,7 @@ def regime_changes(
     system: System, finer: System, axes: Mapping[str, np.ndarray], mu: float, solver: Solver,
     threads: int | None = None, watch: Watch | None = None,
 ) -> tuple[int, int]:  # fmt: skip
-    """How many cells of a coarse map change regime by a finer reduction, and how many it has.
+    """Number of cells of a coarse map whose regime a finer reduction changes, and number of its cells.
 
     Cells that either leaves unresolved do not count as changed.
     """

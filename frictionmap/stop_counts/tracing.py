@@ -235,7 +235,7 @@ def orbit_unknowns(condition: Condition, unknowns: np.ndarray) -> np.ndarray:
 
 
 class _Course(NamedTuple):
-    """Where a border is, where it goes, and how it bends: scaled tangent, its change with length, `_side`."""
+    """Point, scaled tangent and curvature of a border, and the side on which its orbit lives, see `_side`."""
 
     place: Place
     along: np.ndarray

@@ -101,7 +101,7 @@ def _typical(power: np.ndarray) -> float:
 def at_harmonics(
     time: np.ndarray, residual: np.ndarray, frequency: float, harmonics: int, waves: int
 ) -> AtHarmonics:
-    """What a fit leaves at the harmonics, and the noise beside them.
+    """Residuals at the harmonics, and the noise near them.
 
     residual : shape (samples,), of the fit, drift and wander taken out
     waves : how many slow waves were fitted beside the drift

@@ -42,7 +42,7 @@ _SHORT = 0.5
 
 
 class _Scale(NamedTuple):
-    """What a record can resolve."""
+    """Resolution and noise of a record."""
 
     step: float  # of the resolution
     noise: float  # standard deviation, rounding included

@@ -71,7 +71,7 @@ def coloured_noise(time: np.ndarray, residual: np.ndarray, slopes: np.ndarray) -
 
 
 def coloured_growth(time: np.ndarray, slopes: np.ndarray, noise: Coloured) -> np.ndarray:
-    """By what errors of least squares exceed those in white noise of the same variance, shape (unknowns,).
+    """Factors of standard errors against white noise of the same variance, shape (unknowns,).
 
     time, slopes : see `coloured_noise`
     """

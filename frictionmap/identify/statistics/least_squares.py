@@ -59,7 +59,7 @@ class Noise(NamedTuple):
 
 
 class Allowance(NamedTuple):
-    """How the errors of each parameter differ from those that the slopes give."""
+    """Factors of standard errors, and degrees of freedom, that replace those of the slopes."""
 
     larger: np.ndarray  # (parameters,) factors of standard errors
     freedom: np.ndarray | None = (
@@ -149,7 +149,7 @@ def errors(
 
 
 def leverage(slopes: np.ndarray) -> np.ndarray:
-    """How much of each residual a fit takes away, 0 to 1, shape (samples,); their sum is that of unknowns."""
+    """Leverage of each sample, 0 to 1, shape (samples,); the sum is the number of unknowns."""
     length = np.linalg.norm(slopes, axis=0)
     directions, sizes, _ = np.linalg.svd(slopes[:, length > 0.0] / length[length > 0.0], full_matrices=False)
     return np.sum(directions[:, sizes > _RANK * sizes.max(initial=0.0)] ** 2, axis=1)

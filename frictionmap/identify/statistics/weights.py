@@ -24,7 +24,7 @@ def freedom_by_kind(best: Solution, free: np.ndarray, kind: np.ndarray) -> np.nd
 
 
 def estimated_weights(problem: Problem, best: Solution, kind: np.ndarray, unknown: np.ndarray) -> Allowance:
-    """How the errors of estimates change if the variances of some kinds of samples were estimated.
+    """Factors of the standard errors if the variances of some kinds of samples were estimated.
 
     kind : (samples,) from 0
     unknown : (kinds,) bool, whether the variance of a kind was estimated

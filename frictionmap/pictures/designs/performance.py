@@ -24,7 +24,7 @@ _DASHES = {0.5: (0, (4, 1.5)), 1.0: "-", 2.0: (0, (1.5, 1.2))}
 
 
 def _measure_of(ds: xr.Dataset) -> str:
-    """What the response is: a force, or a length."""
+    """Measure of the response: force or length."""
     return "force" if "force" in str(ds.attrs.get("response", "")) else "length"
 
 

@@ -38,7 +38,7 @@ def chain_picture(ds: xr.Dataset) -> FitPicture:
 
 
 def _masses(names: list[str]) -> int:
-    """How many masses the parameters are of."""
+    """Number of masses of the parameters."""
     numbers = [int(found[1]) for name in names if (found := re.fullmatch(r"mass_ratio_(\d)", name))]
     return 2 if "gamma" in names else max(numbers, default=1)
 

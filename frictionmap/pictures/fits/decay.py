@@ -114,7 +114,7 @@ def _draw_friction(ax: Axes, motion: _Motion) -> list[Handle]:
 
 
 def _shape(decay: Decay) -> str:
-    """What the envelope looks like, in words."""
+    """Describe the shape of the envelope."""
     if decay.zeta == 0.0:
         return "straight, as under friction alone"
     return (

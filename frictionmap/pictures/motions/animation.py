@@ -34,7 +34,7 @@ _MASS, _LIGHT = 15.0, 10.0
 
 
 class _Moving(NamedTuple):
-    """What changes from frame to frame, and its values over tau."""
+    """A part of the drawing that changes from frame to frame, and its values over tau."""
 
     tau: np.ndarray
     masses: Sequence[tuple[Line2D, np.ndarray]]

@@ -166,7 +166,7 @@ def test_memory_is_about_what_response_curves_take():
 )
 def test_a_container_may_have_less_than_the_machine(tmp_path, monkeypatch, files, expected):
     monkeypatch.setattr(cost, "_GROUP", tmp_path)
-    monkeypatch.setattr(cost, "_of_machine", lambda: 7e9)
+    monkeypatch.setattr(cost, "_machine_memory", lambda: 7e9)
     (tmp_path / "memory").mkdir()
     for name, content in files.items():
         (tmp_path / name).write_text(content + "\n")

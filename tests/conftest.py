@@ -30,6 +30,21 @@ LONGEST = (
 )  # fmt: skip
 
 
+#: Fixtures that mark the tests that use them.
+FIXTURES = {"reference": "reference_path", "browser": "browser"}
+
+#: Files of tests by what they need beside the package and a processor: a place to build, install, kill or
+#: fill; minutes of measurements.
+MARKED = {
+    "environment": (
+        "test_wheel.py", "test_manual.py", "test_manual_commands.py", "test_gallery.py", "test_readme.py",
+        "test_processors.py", "test_memory.py", "test_cache.py", "test_compiler.py", "test_interrupts.py",
+        "test_stores.py", "test_stores_cut.py", "test_fuzz.py", "test_harness.py",
+    ),
+    "benchmark": ("test_quick_benchmarks.py",),
+}  # fmt: skip
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the option of the trials with invalid input."""
     parser.addoption("--whole", action="store_true", help="tests/fuzz: all trials, not some of every kind")
@@ -42,10 +57,13 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests of the reference data, and begin with the longest files."""
+    """Mark tests by what they need, and begin with the longest files."""
     for item in items:
-        if "reference_path" in getattr(item, "fixturenames", ()):
-            item.add_marker("reference")
+        fixtures = getattr(item, "fixturenames", ())
+        needed = [name for name, files in MARKED.items() if item.path.name in files]
+        needed += [name for name, fixture in FIXTURES.items() if fixture in fixtures]
+        for name in needed:
+            item.add_marker(name)
     items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
 
 

@@ -10,7 +10,7 @@ from ..errors import NoSteadyState
 from ..general.dataset import refuse_static
 from ..general.problem import general_of, springs
 from ..general.response import general_response
-from ..model.general import Group
+from ..model.general import MergedContact
 from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
 from .drawing import drawing_curves, drawing_of
@@ -132,7 +132,7 @@ def _why(beta: float, limits: dict[str, float]) -> list[str]:
     return [f"β = {beta:.4g} lies {' and '.join((*above, *below))}."] if known else []
 
 
-def _sentence(ds: xr.Dataset, group: Group, j: int, regime: int) -> str:
+def _sentence(ds: xr.Dataset, group: MergedContact, j: int, regime: int) -> str:
     """Describe the motion in one contact."""
     elastic = group.stiffness is not None
     words = (_ELASTIC if elastic else _RIGID).get(regime)

@@ -4,7 +4,7 @@ import xarray as xr
 
 from ..errors import InputError
 from ..model.contact import checked_contacts
-from ..model.general import General
+from ..model.general import ContactSystem
 from ..model.settings import Solver
 from ..model.system import System
 from .config import parse, system_in
@@ -21,7 +21,7 @@ def stored_system(ds: xr.Dataset) -> System | None:
     return None if system is None or system.general is not None else system
 
 
-def stored_general(ds: xr.Dataset) -> General | None:
+def stored_general(ds: xr.Dataset) -> ContactSystem | None:
     """Contacts and loads of a system with several contacts, springs, belts or harmonics, from `config`.
 
     None of other systems, and where `config` does not say.

@@ -11,7 +11,7 @@ from ..datasets.labels import GENERAL_VARIABLES, LABELS, PER_CONTACT, attributes
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError
 from ..jobs import Progress, Watch
-from ..model.general import General
+from ..model.general import ContactSystem
 from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import Boundaries, find_boundaries
@@ -35,7 +35,7 @@ _OF_MASSES = ("amplitude", "peak_to_peak", "midpoint")
 _PLACED = {"amplitude", "midpoint", "contact_midpoint", "contact_amplitude"}
 
 
-def outputs_of(general: General, solver: Solver) -> tuple[str, ...]:
+def outputs_of(general: ContactSystem, solver: Solver) -> tuple[str, ...]:
     """The outputs of a map: those asked for, with their counterparts for elastic contacts.
 
     Raises
@@ -189,7 +189,7 @@ def general_map(
     )
 
 
-def refuse_static(general: General, mu: np.ndarray) -> None:
+def refuse_static(general: ContactSystem, mu: np.ndarray) -> None:
     """Refuse mu > 1 with elastic contacts alone."""
     if general.elastic.all() and (mu != 1.0).any():
         raise InputError(

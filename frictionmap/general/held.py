@@ -12,7 +12,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..model.general import General
+from ..model.general import ContactSystem
 from ..model.system import System
 from .problem import general_of, refuse_loop, springs
 
@@ -43,7 +43,7 @@ def _linear(
     return matrix, load
 
 
-def orders_of(general: General) -> list[int]:
+def orders_of(general: ContactSystem) -> list[int]:
     """Orders of the harmonics that move the structure."""
     return sorted({*general.forces, *general.base})
 
@@ -234,7 +234,7 @@ def least_static_friction(system: System, r: np.ndarray) -> np.ndarray:
     return np.where(found <= zero[:, np.newaxis], 0.0, found)
 
 
-def stick_scales(general: General, needed: np.ndarray, mu: np.ndarray) -> np.ndarray:
+def stick_scales(general: ContactSystem, needed: np.ndarray, mu: np.ndarray) -> np.ndarray:
     """beta from which each contact sticks permanently, (n_mu, n_r, N), from the static friction it needs.
 
     inf for a contact with a friction force of its own that is too small; 0 where it is large enough.
@@ -242,7 +242,7 @@ def stick_scales(general: General, needed: np.ndarray, mu: np.ndarray) -> np.nda
     return np.stack([_scales(general, needed, float(value), 1) for value in mu])
 
 
-def rest_scales(general: General, needed: np.ndarray) -> np.ndarray:
+def rest_scales(general: ContactSystem, needed: np.ndarray) -> np.ndarray:
     """beta from which kinetic friction is enough for each contact, (n_r, N), see `stick_scales`.
 
     If it is enough for all contacts, every motion comes to rest (theory.md 6, 11).
@@ -250,7 +250,7 @@ def rest_scales(general: General, needed: np.ndarray) -> np.ndarray:
     return _scales(general, needed, 1.0, 0)
 
 
-def _scales(general: General, needed: np.ndarray, mu: float, which: int) -> np.ndarray:
+def _scales(general: ContactSystem, needed: np.ndarray, mu: float, which: int) -> np.ndarray:
     """beta with which the kinetic (0) or static (1) friction of each contact is what it needs, (n_r, N)."""
     found = np.empty(needed.shape)
     for j, group in enumerate(general.groups):

@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 
 from ..errors import InputError
-from ..model.general import General
+from ..model.general import ContactSystem
 from ..model.system import System
 from .held import half_range, held_forces_of
 from .problem import general_of
@@ -46,7 +46,7 @@ def independent_contacts(w: np.ndarray) -> list[int]:
     return found
 
 
-def _refuse(general: General) -> None:
+def _refuse(general: ContactSystem) -> None:
     """Refuse loops for which forces of one time do not decide."""
     even = [n for n in general.orders if n % 2 == 0]
     further = any(group.first.nu or group.first.wall_velocity or group.base for group in general.groups)

@@ -6,7 +6,7 @@ import numpy as np
 
 from .._kernels.general.problem import Problem
 from ..errors import InputError
-from ..model.general import General
+from ..model.general import ContactSystem
 from ..model.system import System
 
 #: Largest rate of the fastest part of the motion, in tau.
@@ -40,7 +40,7 @@ class ModalSystem(NamedTuple):
     viscous: np.ndarray  # C1
 
 
-def general_of(system: System) -> General:
+def general_of(system: System) -> ContactSystem:
     """The general parts of a system that has some."""
     assert system.general is not None
     return system.general
@@ -117,7 +117,7 @@ def least_ratio(system: System) -> float:
     return _fastest(modal_system(system), springs(general_of(system))) / _HIGHEST_RATE
 
 
-def _symmetric(general: General) -> bool:
+def _symmetric(general: ContactSystem) -> bool:
     """Whether x(tau + pi) = -x(tau) is a motion if x is one."""
     loads = (*general.forces, *general.base)
     normal = [n for group in general.groups for n in group.first.nu]
@@ -132,12 +132,12 @@ def static_offset(system: System) -> tuple[np.ndarray, np.ndarray]:
     return general.vectors @ x, x
 
 
-def springs(general: General) -> np.ndarray:
+def springs(general: ContactSystem) -> np.ndarray:
     """Stiffness of every contact, 0 where it is rigid, (N,)."""
     return np.array([group.stiffness or 0.0 for group in general.groups])
 
 
-def refuse_loop(general: General) -> None:
+def refuse_loop(general: ContactSystem) -> None:
     """Refuse contacts that close a loop, of which only the boundary to permanent sticking is determined."""
     if general.loop:
         raise InputError(f"{general.loop}; leave one out, or find beta_stick with boundaries")

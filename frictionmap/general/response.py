@@ -9,7 +9,7 @@ from .. import regimes
 from .._kernels.general.problem import SECTION
 from ..datasets.labels import CONTACT_TRACES, EXCERPT, LABELS, OLDER_NAMES, PER_CONTACT
 from ..datasets.variables import coordinate, label_variable
-from ..model.general import General
+from ..model.general import ContactSystem
 from ..model.settings import HARMONICS, Solver
 from ..model.system import System
 from .boundaries import find_boundaries
@@ -52,7 +52,7 @@ def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarr
     return found
 
 
-def _load(general: General, tau: np.ndarray) -> np.ndarray:
+def _load(general: ContactSystem, tau: np.ndarray) -> np.ndarray:
     """Load over tau: the sum of those on all masses."""
     phasors = {n: complex(vector.sum()) for n, vector in general.forces.items()}
     return sum((p * np.exp(1j * n * tau)).real for n, p in phasors.items()) + np.zeros_like(tau)
@@ -131,7 +131,7 @@ def _trace(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
     return xr.Variable(("contact", "tau"), values, label_variable(name, values[0]).attrs)
 
 
-def is_wanted(name: str, general: General) -> bool:
+def is_wanted(name: str, general: ContactSystem) -> bool:
     """Whether a number says something about contacts of these kinds."""
     if name.startswith(("stops_", "turns_", "stuck_")):
         return not general.elastic.all()

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .. import regimes
-from ..model.general import General
+from ..model.general import ContactSystem
 
 #: Part of a vector outside the span of others, over its length, that is rounding error.
 _ROUNDING = 1e-12
@@ -12,7 +12,7 @@ _ROUNDING = 1e-12
 _AT_ZERO = 2.0**-44
 
 
-def still_masses(general: General, rests: np.ndarray) -> np.ndarray:
+def still_masses(general: ContactSystem, rests: np.ndarray) -> np.ndarray:
     """Whether each mass is at rest if some contacts are, (n,) bool.
 
     rests : (N,) bool
@@ -26,7 +26,9 @@ def still_masses(general: General, rests: np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.norm(np.eye(n) - span @ span.T, axis=0) <= _ROUNDING)
 
 
-def put_still(general: General, contact_regime: np.ndarray, lowest: np.ndarray, highest: np.ndarray) -> None:
+def put_still(
+    general: ContactSystem, contact_regime: np.ndarray, lowest: np.ndarray, highest: np.ndarray
+) -> None:
     """Take the rounding errors from the displacements of masses that are at rest.
 
     contact_regime : (..., N)

@@ -2,8 +2,7 @@
 
     r^2 M x'' + r C1 x' + K x + W f = p(tau),   z = W^T x - s u(tau),   w = z' - v
 
-`general_of` collects what a `System` has of these; None if it is one rigid contact under one harmonic, which
-has an engine of its own.
+`contact_system` collects the contacts and loads of any `System`, in whichever form they are given.
 """
 
 import math
@@ -98,11 +97,11 @@ class Definition(Protocol):
     def loads(self) -> tuple[complex, ...] | None: ...
 
     @property
-    def general(self) -> "General | None": ...
+    def general(self) -> "ContactSystem | None": ...
 
 
 @dataclass(frozen=True)
-class Group:
+class MergedContact:
     """A contact, several parallel rigid ones that act as one, or an element of a bank."""
 
     members: tuple[Contact, ...]
@@ -136,10 +135,10 @@ class Group:
 
 
 @dataclass(frozen=True)
-class General:
-    """Data of the general engine in addition to the structure."""
+class ContactSystem:
+    """Contacts and loads of a system, in one form."""
 
-    groups: tuple[Group, ...]
+    groups: tuple[MergedContact, ...]
     forces: Mapping[int, np.ndarray]  # phasors (n,) of the loads on the masses, by order
     base: Mapping[int, complex]  # phasors of the base motion
     offset: np.ndarray  # (n,) constant loads
@@ -183,27 +182,24 @@ def uses_general(system: Definition) -> bool:
     return any(one is not None for one in given) or system.wall_velocity != 0.0
 
 
-def general_of(system: Definition) -> General | None:
-    """Collect and check what the general engine needs; None if the system does not need it."""
+def contact_system(system: Definition) -> ContactSystem:
+    """Collect and check the contacts and loads of a system, in whichever form they are given."""
     if system.harmonics is not None and system.waveform is None:
         raise InputError("cannot use harmonics without waveform: it is the number of its harmonics; omit it")
-    if not uses_general(system):
-        return None
     groups = _groups(system)
     forces, base = _loads(system)
     if system.load_offset is not None and system.excitation == "base":
         raise InputError("cannot use load_offset with base excitation: it is a force on each mass; omit one")
     offset = _offset(system.load_offset, system.n)
-    general = General(groups, forces, base, offset, _describe_loop(groups))
-    moving = any(group.first.wall_velocity for group in groups)
-    if not general.forces and not general.base and not moving:
-        raise InputError("load_harmonics must have a harmonic that is not zero; got none")
-    if not general.forces and not general.base:
+    found = ContactSystem(groups, forces, base, offset, _describe_loop(groups))
+    if not found.forces and not found.base:
+        if not any(group.first.wall_velocity for group in groups):
+            raise InputError("load_harmonics must have a harmonic that is not zero; got none")
         raise InputError(
             "cannot compute without a load: a belt alone makes vibrations of a period of their own; "
             "give load_harmonics"
         )
-    return general
+    return found
 
 
 def refuse_general(system: Definition, what: str) -> None:
@@ -247,27 +243,39 @@ def check_contacts(system: Definition) -> tuple[Contact, ...] | None:
     return found
 
 
-def vector_of(contact: Contact, dofs: Dofs, name: str) -> np.ndarray:
-    """c (n,) of a contact: z = c.x - s u."""
-    count = 2 if contact.kind == "between-masses" else 1
-    masses: tuple = contact.masses  # type: ignore[assignment]
+def mass_key(system: Definition, k: int) -> str:
+    """Key under which the masses of contact k, counted from 1, are given."""
+    return "contact_masses" if system.contacts is None else f"contacts[{k}].masses"
+
+
+def contact_rows(masses: Sequence[int | str], kind: str, dofs: Dofs, key: str) -> tuple[int, ...]:
+    """Numbers of the masses of a contact, checked.
+
+    key : name of the key that gives them, for messages
+    """
+    count = 2 if kind == "between-masses" else 1
     if len(masses) != count:
         wanted = "two masses [A, B]" if count == 2 else "one mass"
-        raise InputError(f"{name}.masses must name {wanted} for {contact.kind}; got {list(masses)}")
-    numbers = [dofs.number(mass, f"{name}.masses[{k}]") for k, mass in enumerate(masses)]
+        raise InputError(f"{key} must name {wanted} for {kind}; got {list(masses)}")
+    numbers = tuple(dofs.number(mass, f"{key}[{k}]") for k, mass in enumerate(masses))
     if count == 2 and numbers[0] >= numbers[1]:
-        raise InputError(f"{name}.masses must be [A, B] with A < B; got {numbers}")
-    rows = dofs.rows(tuple(numbers))
+        raise InputError(f"{key} must be [A, B] with A < B; got {list(masses)}")
+    return numbers
+
+
+def vector_of(contact: Contact, dofs: Dofs, key: str) -> np.ndarray:
+    """c (n,) of a contact: z = c.x - s u; `key` as in `contact_rows`."""
+    rows = dofs.rows(contact_rows(contact.masses, contact.kind, dofs, key))
     c = np.zeros(dofs.n)
     c[rows[-1]] = 1.0
-    if count == 2:
+    if len(rows) == 2:
         c[rows[0]] = -1.0
     return c
 
 
-def _groups(system: Definition) -> tuple[Group, ...]:
+def _groups(system: Definition) -> tuple[MergedContact, ...]:
     """The contacts of a system, banks as their elements, parallel rigid ones merged."""
-    found: list[Group] = []
+    found: list[MergedContact] = []
     contacts = contacts_of(system)
     elements = [(k, element) for k, one in enumerate(contacts, 1) for element in one.elements]
     if len(elements) > MOST_CONTACTS:
@@ -278,7 +286,7 @@ def _groups(system: Definition) -> tuple[Group, ...]:
         base = int(contact.kind == "joined-base-wall")
         if base and system.excitation != "base":
             raise InputError(f"{name} must have base excitation for a joined-base-wall; got 'force'")
-        vector = vector_of(contact, system.dofs, name)
+        vector = vector_of(contact, system.dofs, mass_key(system, k))
         for i, other in enumerate(found):
             same = np.array_equal(other.vector, vector) and other.base == base
             if not same or contact.stiffness is not None or other.first.stiffness is not None:
@@ -288,16 +296,16 @@ def _groups(system: Definition) -> tuple[Group, ...]:
                     f"{name} must have the wall_velocity and the normal_load of {other.name}, with which it "
                     f"is parallel; got another one"
                 )
-            found[i] = Group((*other.members, contact), vector, base)
+            found[i] = MergedContact((*other.members, contact), vector, base)
             break
         else:
-            found.append(Group((contact,), vector, base))
+            found.append(MergedContact((contact,), vector, base))
     if not any(one.ratio or one.force for one in contacts):
         raise InputError("contacts must have a ratio or a force > 0; got none")
     return tuple(found)
 
 
-def _describe_loop(groups: Sequence[Group]) -> str:
+def _describe_loop(groups: Sequence[MergedContact]) -> str:
     """Name the rigid contacts whose vectors are linearly dependent; empty if there are none."""
     rigid = [k for k, group in enumerate(groups) if group.stiffness is None]
     if not rigid:
@@ -459,12 +467,12 @@ def format_orders(orders: Sequence[int]) -> str:
     return f"{orders[0]}, {orders[1]}, ..., {orders[-1]}"
 
 
-def describe_general(general: General, dofs: Dofs) -> str:
+def describe_contacts(general: ContactSystem, dofs: Dofs) -> str:
     """Describe the contacts in one line."""
     return "; ".join(_describe_group(group, dofs) for group in general.groups)
 
 
-def _describe_group(group: Group, dofs: Dofs) -> str:
+def _describe_group(group: MergedContact, dofs: Dofs) -> str:
     one = group.first
     masses: tuple = one.masses  # type: ignore[assignment]
     a, b = (dofs.word(dofs.number(mass, "masses")) for mass in (masses[0], masses[-1]))

@@ -20,12 +20,15 @@ from .contact import CONTACTS, Contact, numbers
 from .coupled_modes import CoupledModel, coupled_model
 from .decoupling import Decoupling
 from .general import (
-    General,
+    ContactSystem,
     base_is_meant,
     check_contacts,
-    describe_general,
+    contact_rows,
+    contact_system,
+    describe_contacts,
     format_orders,
-    general_of,
+    mass_key,
+    uses_general,
 )
 from .html import as_table
 from .matrices import Matrices, full_matrices, reduced_matrices
@@ -69,18 +72,6 @@ def _ratios(values: object, name: str) -> tuple[float, ...]:
     if ratios[0] != 1.0:
         raise InputError(f"{name}[0] must be 1, the unit of the others; got {ratios[0]:g}")
     return ratios
-
-
-def _contact_masses(values: object, contact: str, dofs: Dofs) -> tuple[int, ...]:
-    values = _sequence(values, "contact_masses", "whole numbers")
-    count = 2 if contact == "between-masses" else 1
-    if len(values) != count:
-        wanted = "two masses [A, B]" if count == 2 else "one mass"
-        raise InputError(f"contact_masses must name {wanted} for {contact}; got {list(values)}")
-    masses = tuple(dofs.number(value, f"contact_masses[{index}]") for index, value in enumerate(values))
-    if count == 2 and masses[0] >= masses[1]:
-        raise InputError(f"contact_masses must be [A, B] with A < B; got {list(values)}")
-    return masses
 
 
 def _damping(values: object, n: int) -> tuple[float, ...]:
@@ -252,7 +243,7 @@ class System:
     harmonics: int | None = None
     load_offset: Sequence[float] | None = None
     _scale: float | None = field(default=None, init=False, repr=False)
-    _general: General | None = field(default=None, init=False, repr=False, compare=False)
+    _contact_system: ContactSystem = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         previous = self.matrices.reduction if isinstance(self.matrices, Matrices) else None
@@ -275,8 +266,8 @@ class System:
             scale = self.reduction.first_frequency
         self._set("_scale", scale)
         self._check_damping()
-        self._set("_general", general_of(self))
-        if self._general is not None and self.reduce is not None:
+        self._set("_contact_system", contact_system(self))
+        if self.reduce is not None and uses_general(self):
             raise InputError(
                 "cannot use reduce with several contacts, springs, belts or loads of several harmonics: they "
                 "need all degrees of freedom; omit it"
@@ -381,7 +372,8 @@ class System:
             raise InputError(
                 "contact must be fixed-wall or joined-base-wall for one mass; got 'between-masses'"
             )
-        self._set("contact_masses", _contact_masses(self.contact_masses, self.contact, self.dofs))
+        masses = _sequence(self.contact_masses, "contact_masses", "whole numbers")
+        self._set("contact_masses", contact_rows(masses, self.contact, self.dofs, mass_key(self, 1)))
 
     def _check_load(self) -> None:
         if self.excitation is None:
@@ -416,9 +408,14 @@ class System:
             )
 
     @property
-    def general(self) -> General | None:
+    def contact_system(self) -> ContactSystem:
+        """All contacts and loads, whichever keys they are given by."""
+        return self._contact_system
+
+    @property
+    def general(self) -> ContactSystem | None:
         """Data of the general engine; None for one rigid contact under one harmonic load."""
-        return self._general
+        return self._contact_system if uses_general(self) else None
 
     @property
     def n(self) -> int:
@@ -642,11 +639,10 @@ class System:
 
     @cached_property
     def _description(self) -> str:
+        contacts = describe_contacts(self.contact_system, self.dofs)
+        words = (contacts, self._describe_load(), self._describe_damping())
         if self.n == 1 and self.matrices is None:
-            return (
-                f"one mass; {self._describe_contact()}, {self._describe_load()}; {self._describe_damping()}"
-            )
-        words = (self._describe_contact(), self._describe_load(), self._describe_damping())
+            return f"one mass; {words[0]}, {words[1]}; {words[2]}"
         return "; ".join((self._describe_structure(), *words))
 
     def _repr_html_(self) -> str:
@@ -675,22 +671,10 @@ class System:
         springs = _format_values(self.stiffness_ratios)  # type: ignore[arg-type]
         return f"chain of {self.n} masses ({masses}), springs ({springs})"
 
-    def _describe_contact(self) -> str:
-        if self._general is not None:
-            return describe_general(self._general, self.dofs)
-        masses = [self.dofs.word(number) for number in self.contact_masses]  # type: ignore[arg-type]
-        a, b = masses[0], masses[-1]
-        mass = "the mass" if self.n == 1 else f"mass {b}"
-        return {
-            "fixed-wall": f"friction between {mass} and a fixed wall",
-            "joined-base-wall": f"friction between {mass} and a wall that moves with the base",
-            "between-masses": f"friction between masses {a} and {b}",
-        }[self.contact]
-
     def _describe_load(self) -> str:
         one = self.n == 1
-        if self._general is not None and self._general.orders != (1,):
-            return f"periodic load, harmonics {format_orders(self._general.orders)}"
+        if self.contact_system.orders != (1,):
+            return f"periodic load, harmonics {format_orders(self.contact_system.orders)}"
         if self.excitation == "base":
             through = "the spring" if one else "the springs"
             if self.damping_reference == "base":

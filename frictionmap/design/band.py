@@ -60,12 +60,9 @@ def _patterns(count: int) -> Iterator[tuple[int, ...]]:
 
 def natural_frequencies(system: System) -> np.ndarray:
     """Natural frequency ratios with contacts free and held, in all combinations of few; increasing."""
-    modes, general = system.modes, system.general
-    mass, stiffness = modes.mass, modes.stiffness
-    vectors = np.atleast_2d(modes.contact)
-    springs: list[float | None] = [None]
-    if general is not None:
-        vectors, springs = general.vectors, [group.stiffness for group in general.groups]
+    contacts = system.contact_system
+    mass, stiffness = system.modes.mass, system.modes.stiffness
+    vectors, springs = contacts.vectors, [group.stiffness for group in contacts.groups]
     found = []
     for pattern in _patterns(len(springs)):
         rigid = [j for j in pattern if springs[j] is None]
@@ -88,6 +85,6 @@ def _clusters(frequencies: np.ndarray, zeta: float) -> np.ndarray:
 
 def peak_samples(system: System, band: Band) -> np.ndarray:
     """Frequencies at which responses are sampled to find their peaks: close together at w/n of a load n."""
-    orders = np.array([1] if system.general is None else system.general.orders, dtype=float)
+    orders = np.array(system.contact_system.orders, dtype=float)
     resonances = (natural_frequencies(system) / orders[:, np.newaxis]).ravel()
     return band.samples(PEAK_SAMPLES, _clusters(resonances, _zeta(system)))

@@ -60,15 +60,11 @@ def _distance(r: np.ndarray, poles: np.ndarray) -> np.ndarray:
 
 def stick_poles(system: System) -> np.ndarray:
     """Poles of the forces in contacts that are held: of the held structure, over the orders of the load."""
-    modes, general = system.modes, system.general
-    if general is None:
-        held, stiffness, orders = np.atleast_2d(modes.contact), modes.stiffness, [1]
-    else:
-        held = general.vectors[~general.elastic]
-        stiffness = modes.stiffness + (general.vectors.T * springs(general)) @ general.vectors
-        orders = orders_of(general)
+    modes, contacts = system.modes, system.contact_system
+    held = contacts.vectors[~contacts.elastic]
+    stiffness = modes.stiffness + (contacts.vectors.T * springs(contacts)) @ contacts.vectors
     p = complex_frequencies(modes.mass, modes.damping, stiffness, held)
-    return (p / np.array(orders)[:, np.newaxis]).ravel()
+    return (p / np.array(orders_of(contacts))[:, np.newaxis]).ravel()
 
 
 def no_stop_poles(system: System, low: float) -> np.ndarray:

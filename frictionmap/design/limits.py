@@ -61,11 +61,9 @@ def needed_friction(system: System, r: np.ndarray) -> np.ndarray:
 
 def _scales(system: System, needed: np.ndarray, mu: float | None) -> np.ndarray:
     """Friction ratio at which each contact has the friction it needs, (n_r, N); mu as in `stick_limit`."""
-    if system.general is None:
-        return needed / (1.0 if mu is None else mu)
     if mu is None:
-        return rest_scales(system.general, needed)
-    return stick_scales(system.general, needed, np.array([mu]))[0]
+        return rest_scales(system.contact_system, needed)
+    return stick_scales(system.contact_system, needed, np.array([mu]))[0]
 
 
 def stick_limit(system: System, r: np.ndarray, mu: float | None) -> np.ndarray:
@@ -98,14 +96,12 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
 
 def has_no_stop_limit(system: System) -> bool:
     """Whether `no_stop_limit` exists."""
-    return system.general is None or not system.general.elastic.any()
+    return not system.contact_system.elastic.any()
 
 
 def starts_matter(system: System, mu: float) -> bool:
     """Whether a cell may have several steady states: static friction exceeds kinetic friction somewhere."""
-    if system.general is None:
-        return mu > 1.0
-    return not system.general.has_equal_friction(mu)
+    return not system.contact_system.has_equal_friction(mu)
 
 
 def may_reach(bracket: Brackets, level: float) -> Brackets:

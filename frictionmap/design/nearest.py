@@ -33,9 +33,8 @@ class Limit(NamedTuple):
 
 def stick_at(system: System, beta: float, mu: float) -> Limit:
     """The boundary beta_stick = beta: where a contact needs the friction that it has."""
-    general = system.general
-    levels = [beta * mu] if general is None else [group.friction(beta, mu)[1] for group in general.groups]
-    least = least_ratio(system) if general is None else 0.0
+    levels = [group.friction(beta, mu)[1] for group in system.contact_system.groups]
+    least = least_ratio(system) if system.general is None else 0.0
     return Limit(
         lambda r: needed_friction(system, r) - np.array(levels), partial(stick_samples, system), least
     )

@@ -79,8 +79,8 @@ def checked_response(system: System, quantity: object, mass: object, contact: ob
     if number not in system.dofs.numbers:
         kept = ", ".join(str(kept) for kept in system.dofs.numbers)
         raise InputError(f"mass must be one of {kept}; got {number}")
-    contacts = 1 if system.general is None else system.general.count
-    return Response(quantity, number, checks.whole(contact, "contact", least=1, most=contacts))
+    most = system.contact_system.count
+    return Response(quantity, number, checks.whole(contact, "contact", least=1, most=most))
 
 
 class Responses:

@@ -74,8 +74,7 @@ class Task:
     @property
     def may_be_without_friction(self) -> bool:
         """Whether beta = 0 is a steady state of the engine: springs of contacts without friction are not."""
-        general = self.system.general
-        return general is None or not general.elastic.any()
+        return not self.system.contact_system.elastic.any()
 
 
 def checked_task(

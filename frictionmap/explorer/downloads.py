@@ -99,8 +99,7 @@ def sizes(scene: Scene, view: View, quantity: CellQuantity, piece: Piece) -> dic
     scales = scales_of(scene.units, view.system)
     outputs = _solver(view, quantity).outputs
     masses = view.system.n if "amplitude" in outputs else 1
-    general = view.system.general
-    contacts = 1 if general is None else general.count
+    contacts = view.system.contact_system.count
 
     def copies(name: str) -> int:
         """Number of variables: the ratio, and its value in SI units if known."""

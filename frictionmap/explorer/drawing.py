@@ -48,9 +48,10 @@ def drawing_curves(system: System, tau: np.ndarray) -> dict[str, np.ndarray]:
     rows = _rows(system)
     loaded = [row for row in _loaded(system) if row in rows]
     if system.excitation == "base":
-        phasors = {1: 1.0 + 0.0j} if system.general is None else system.general.base
+        phasors = system.contact_system.base
         return {"base": _displacements_at({n: np.array([u]) for n, u in phasors.items()}, tau)[0]}
-    return {"load": _displacements_at({n: load[loaded] for n, load in _forces(system).items()}, tau)}
+    forces = system.contact_system.forces
+    return {"load": _displacements_at({n: load[loaded] for n, load in forces.items()}, tau)}
 
 
 def _displacements_at(phasors: Mapping[int, np.ndarray], tau: np.ndarray) -> np.ndarray:
@@ -59,34 +60,19 @@ def _displacements_at(phasors: Mapping[int, np.ndarray], tau: np.ndarray) -> np.
     return np.asarray(total, dtype=np.float32)
 
 
-def _vectors(system: System) -> np.ndarray:
-    """Vectors c of all contacts, (N, n)."""
-    general = system.general
-    return system.contact_vector[np.newaxis] if general is None else general.vectors
-
-
 def _rows(system: System) -> list[int]:
     """Rows of the masses that are drawn."""
     if system.n <= _MASSES and system.reduction is None:
         return list(range(system.n))
-    touched = {int(row) for row in np.flatnonzero(_vectors(system).any(axis=0))}
+    touched = {int(row) for row in np.flatnonzero(system.contact_system.vectors.any(axis=0))}
     return sorted([*touched, *(row for row in _loaded(system) if row not in touched)][:_MASSES])
-
-
-def _forces(system: System) -> Mapping[int, np.ndarray]:
-    """Phasors (n,) of the loads on the masses by order."""
-    if system.general is not None:
-        return system.general.forces
-    if system.loads is not None:
-        return {1: np.array(system.loads)}
-    return {1: np.eye(system.n)[system.dofs.row(system.load_mass)].astype(complex)}  # type: ignore[arg-type]
 
 
 def _loaded(system: System) -> list[int]:
     """Rows of masses under load, the largest first; none if the base moves."""
     if system.excitation == "base":
         return []
-    size = sum(np.abs(load) for load in _forces(system).values())
+    size = sum(np.abs(load) for load in system.contact_system.forces.values())
     order = np.argsort(-np.asarray(size), kind="stable")
     return [int(row) for row in order if np.asarray(size)[row] > 0.0][:_MASSES]
 
@@ -105,10 +91,8 @@ def _contacts(system: System, rows: list[int]) -> list[DrawnContact]:
     def places(vector: np.ndarray) -> list[int]:
         return [rows.index(int(row)) for row in np.flatnonzero(vector)]
 
-    general = system.general
-    if general is None:
-        return [DrawnContact("", places(system.contact_vector), bool(system.base_motion), False, 0.0)]
-    several = general.count > 1
+    groups = system.contact_system.groups
+    several = len(groups) > 1
     return [
         DrawnContact(
             group.name if several else "",
@@ -117,5 +101,5 @@ def _contacts(system: System, rows: list[int]) -> list[DrawnContact]:
             group.stiffness is not None,
             float(group.first.wall_velocity),
         )
-        for group in general.groups
+        for group in groups
     ]

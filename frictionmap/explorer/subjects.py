@@ -30,9 +30,8 @@ def subjects_of(system: System) -> tuple[Subject, ...]:
         Subject(f"mass-{number}", name_of_mass(system, number), "amplitude", number)
         for number in system.dofs.numbers[:_OFFERED]
     )
-    names = ["the contact"]
-    if system.general is not None and system.general.count > 1:
-        names = [group.name for group in system.general.groups]
+    groups = system.contact_system.groups
+    names = [group.name for group in groups] if len(groups) > 1 else ["the contact"]
     contacts = tuple(
         Subject(f"contact-{number}", name, "contact", number) for number, name in enumerate(names, 1)
     )

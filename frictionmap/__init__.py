@@ -20,7 +20,9 @@ datasets       contents of datasets: names, types, units, valid values, provenan
 roots          search for all roots of functions with known poles
 features       high-frequency limits, peak thresholds, invariant points: features that need no map
 theory         closed forms over frequency: beta_lim, beta_stick, continuous motion
+single         one rigid contact under one harmonic load: cells, maps, curves, motions
 general        several contacts, springs in contacts, belts, periodic loads: boundaries, maps, motions
+solvers        the engines behind one interface, and which of them answers for a system
 steady         steady states: cells, maps, response curves, time histories; time and memory of a map
 stop_counts    borders between numbers of stops per cycle, as exact curves
 files          configurations; output files, reading, writing; summaries in words

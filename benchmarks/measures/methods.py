@@ -21,7 +21,7 @@ from frictionmap._kernels.structure.oscillators import make_scratch, make_state
 from frictionmap._kernels.structure.state import contact_displacement, make_structure
 from frictionmap._kernels.taylor_series import MAX_TERMS
 from frictionmap.model.settings import Solver
-from frictionmap.steady.cells import Cells
+from frictionmap.single.cells import Cells
 
 from ..peers import cvode, heyoka, solve_ivp
 from ..peers.body import SHORTEST_STOP, TWO_PI, Body, Cell

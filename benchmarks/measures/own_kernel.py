@@ -7,8 +7,8 @@ import numpy as np
 import frictionmap as fm
 from frictionmap._kernels.engine.fill import OpenCells
 from frictionmap.model.settings import Solver
-from frictionmap.steady.cells import Cells
-from frictionmap.steady.maps import Arrays, allocate
+from frictionmap.single.cells import Cells
+from frictionmap.single.maps import Arrays, allocate
 
 
 def cells_by_kernel(

@@ -40,7 +40,7 @@ from frictionmap._kernels.engine.motion import at_frequency, contact_at, start
 from frictionmap._kernels.engine.one_mass import Frequencies, OneMassSystem
 from frictionmap._kernels.engine.records import Limits
 from frictionmap.model.settings import Solver
-from frictionmap.steady.maps import Arrays
+from frictionmap.single.maps import Arrays
 from frictionmap.theory.boundary_curves import one_mass_curves
 
 from ..peers.body import Body, Cell, Outcome

@@ -32,8 +32,8 @@ from frictionmap._kernels.structure.oscillators import FELL, make_scratch, make_
 from frictionmap._kernels.structure.state import make_structure
 from frictionmap._kernels.taylor_series import MAX_TERMS
 from frictionmap.model.settings import Solver
-from frictionmap.steady.cells import Cells
-from frictionmap.steady.maps import Arrays
+from frictionmap.single.cells import Cells
+from frictionmap.single.maps import Arrays
 from frictionmap.theory.boundary_curves import many_mode_curves, one_mass_curves
 
 from ..peers.body import Body, Cell, Outcome

@@ -14,6 +14,7 @@ from ..general.held import orders_of
 from ..general.problem import springs
 from ..model.held_structure import complex_frequencies
 from ..model.system import System
+from ..solvers.choose import engine_of
 from .band import Band
 
 #: Distance of samples over that from the nearest pole, of closed forms.
@@ -74,10 +75,11 @@ def no_stop_poles(system: System, low: float) -> np.ndarray:
     """
     modes = system.modes
     p = complex_frequencies(modes.mass, modes.damping, modes.stiffness, np.empty((0, system.n)))
-    step, most = (2, MOST_ORDERS) if system.general is None else (1, _FOLLOWED_ORDERS)
+    engine = engine_of(system)
+    most = MOST_ORDERS if engine.has_closed_limits else _FOLLOWED_ORDERS
     found = []
     for one in p:
         merged = _MERGED * abs(one) / abs(one.imag) if one.imag else np.inf
         last = max(1.0, min(one.real / low + 1.0, merged, most))
-        found.append(one / np.arange(1.0, last + 1.0, step))
+        found.append(one / np.arange(1.0, last + 1.0, engine.order_step))
     return np.concatenate(found)

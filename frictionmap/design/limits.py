@@ -5,10 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import InputError
-from ..general.boundaries import find_boundaries
-from ..general.held import least_static_friction, rest_scales, stick_scales
+from ..general.held import rest_scales, stick_scales
 from ..model.system import System
-from ..theory.boundary_curves import find_curves
+from ..solvers.choose import engine_of
 from .band import Band
 from .extremes import Brackets, brackets_of, chosen, joined, refine_maxima
 from .grading import FINE, FOLLOWED, graded, no_stop_poles, stick_poles
@@ -38,9 +37,13 @@ def stick_samples(system: System, band: Band) -> np.ndarray:
     return graded(band, stick_poles(system), FINE)
 
 
+def _fineness(system: System) -> float:
+    return FINE if engine_of(system).has_closed_limits else FOLLOWED
+
+
 def no_stop_samples(system: System, band: Band) -> np.ndarray:
     """Frequencies that show all of beta_lim over a band."""
-    return graded(band, no_stop_poles(system, band.low), FINE if system.general is None else FOLLOWED)
+    return graded(band, no_stop_poles(system, band.low), _fineness(system))
 
 
 def boundary_samples(system: System, band: Band) -> np.ndarray:
@@ -48,15 +51,13 @@ def boundary_samples(system: System, band: Band) -> np.ndarray:
     if not has_no_stop_limit(system):
         return stick_samples(system, band)
     poles = np.concatenate((no_stop_poles(system, band.low), stick_poles(system)))
-    return graded(band, poles, FINE if system.general is None else FOLLOWED)
+    return graded(band, poles, _fineness(system))
 
 
 def needed_friction(system: System, r: np.ndarray) -> np.ndarray:
     """Friction with which each contact holds, over P, (n_r, N): half the range of its force."""
     look()
-    if system.general is None:
-        return find_curves(system, r, np.array([1.0])).beta_stick[0][:, np.newaxis]
-    return least_static_friction(system, r)
+    return engine_of(system).needed_friction(r)
 
 
 def _scales(system: System, needed: np.ndarray, mu: float | None) -> np.ndarray:
@@ -84,14 +85,12 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
         All contacts are elastic: they have no such limit.
     """
     look()
-    if system.general is None:
-        return find_curves(system, r, np.array([mu])).beta_lim[0]
-    if system.general.elastic.any():
+    if not has_no_stop_limit(system):
         raise InputError(
             "cannot find friction without stops with contact_stiffness: a spring in the contact has no such "
             "limit; use question stuck"
         )
-    return find_boundaries(system, r, np.array([mu]), watch=current_watch(), intervals=1).beta_lim[0]
+    return engine_of(system).no_stop_limit(r, mu, current_watch())
 
 
 def has_no_stop_limit(system: System) -> bool:

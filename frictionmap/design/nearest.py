@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import checks
-from ..general.problem import least_ratio as least_general_ratio
 from ..model.system import System
-from ..theory.boundary_curves import least_ratio
+from ..solvers.choose import engine_of
 from .band import Band
 from .extremes import brackets_of, chosen, joined, refine_maxima
 from .limits import may_reach, needed_friction, no_stop_limit, no_stop_samples, stick_samples
@@ -34,20 +33,20 @@ class Limit(NamedTuple):
 def stick_at(system: System, beta: float, mu: float) -> Limit:
     """The boundary beta_stick = beta: where a contact needs the friction that it has."""
     levels = [group.friction(beta, mu)[1] for group in system.contact_system.groups]
-    least = least_ratio(system) if system.general is None else 0.0
     return Limit(
-        lambda r: needed_friction(system, r) - np.array(levels), partial(stick_samples, system), least
+        lambda r: needed_friction(system, r) - np.array(levels),
+        partial(stick_samples, system),
+        engine_of(system).least_stick_ratio,
     )
 
 
 def no_stop_at(system: System, beta: float, mu: float) -> Limit:
     """The boundary beta_lim = beta."""
-    least = least_ratio(system) if system.general is None else least_general_ratio(system)
 
     def above(r: np.ndarray) -> np.ndarray:
         return (no_stop_limit(system, r, mu) - beta)[:, np.newaxis]
 
-    return Limit(above, partial(no_stop_samples, system), least)
+    return Limit(above, partial(no_stop_samples, system), engine_of(system).least_ratio)
 
 
 def around(limit: Limit, r: float) -> Band:

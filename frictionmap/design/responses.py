@@ -9,14 +9,15 @@ import numpy as np
 
 from .. import checks, regimes
 from ..errors import InputError
-from ..general.dataset import cell_values, contact_values, refuse_static
+from ..general.dataset import cell_values, contact_values
 from ..general.maps import solve_cells
 from ..model.general import contacts_of
 from ..model.settings import Output, Solver, Start
 from ..model.system import System
-from ..steady.maps import compute
-from ..steady.quantity_data import quantity_request, read_result
-from ..steady.scattered import scattered_cells
+from ..single.maps import compute
+from ..single.quantity_data import quantity_request, read_result
+from ..single.scattered import scattered_cells
+from ..solvers.choose import engine_of
 from .limits import starts_matter, stick_limit
 from .watching import current_watch, look
 
@@ -96,8 +97,7 @@ class Responses:
             outputs.append(_OUTPUTS[response.quantity])
         else:
             self._request = quantity_request((_OF_CYCLE[response.quantity],))
-        if system.general is not None:
-            refuse_static(system.general, np.array([mu]))
+        engine_of(system).check_static(np.array([mu]))
         starts: Sequence[Start] = ("rest", "moving") if starts_matter(system, mu) else ("rest",)
         self._solvers = [Solver(start=start, outputs=outputs) for start in starts]
 

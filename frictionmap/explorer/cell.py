@@ -13,8 +13,8 @@ from ..model.settings import Output, Start
 from ..model.system import System
 from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
-from ..steady.maps import solve_map
-from ..steady.motion import MotionRequest, SteadyMotion, find_motion
+from ..single.maps import solve_map
+from ..single.motion import MotionRequest, SteadyMotion, find_motion
 from .drawing import drawing_curves, drawing_of
 from .views import Follower, View, name_of_mass
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..model.system import System
+from ..solvers.choose import engine_of
 
 
 class Compilation(NamedTuple):
@@ -65,9 +66,7 @@ _NAME = "compile-times.json"
 
 def group_of(work: str, system: System) -> str:
     """Name of the kernels that a kind of work needs for a system, such as "map one"."""
-    if system.general is not None:
-        return f"{work} general"
-    return f"{work} {'one' if system.normalised else 'structure'}"
+    return f"{work} {engine_of(system).kernels}"
 
 
 def default_place() -> Path | None:

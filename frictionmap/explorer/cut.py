@@ -43,7 +43,7 @@ def cut(
 def _piece(
     view: View, along: Along, at: float, places: np.ndarray, follower: Follower
 ) -> dict[str, np.ndarray]:
-    from ..steady.curves import solve_curves  # with xarray, which a page can do without until a line is drawn
+    from ..single.curves import solve_curves  # with xarray, which a page can do without until a line is drawn
 
     here = np.array([at])
     axes = {"r": places, "beta": here} if along == "r" else {"r": here, "beta": places}

@@ -11,7 +11,7 @@ from ..model.settings import Output
 from ..model.system import System
 from ..pictures.classes import of_cells, stops_range
 from ..pictures.palette import MORE, NON_INTEGER
-from ..steady.maps import solve_map
+from ..single.maps import solve_map
 from .lines import line_names, line_values
 from .views import CellQuantity, Follower, Piece, View, middles, quantities
 

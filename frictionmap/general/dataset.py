@@ -195,3 +195,25 @@ def refuse_static(general: ContactSystem, mu: np.ndarray) -> None:
         raise InputError(
             f"mu must be 1 with contact_stiffness: the spring would jump at break-away; got {mu.max():g}"
         )
+
+
+def general_boundaries(system: System, r: np.ndarray, mu: np.ndarray) -> xr.Dataset:
+    """Boundaries of a system with several contacts, springs, belts or harmonics."""
+    from .limit_kinds import find_limits
+    from .loops import loop_stick_scales
+
+    contacts = general_of(system)
+    refuse_static(contacts, mu)
+    axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
+    coords = {name: coordinate(name, axis) for name, axis in axes.items()} | contact_coordinates(system)
+    if contacts.loop:
+        variables = {"beta_stick": label_variable("beta_stick", loop_stick_scales(system, r, mu))}
+    else:
+        limits = find_boundaries(system, r, mu)
+        variables = boundary_variables(system, limits)
+        if not contacts.elastic.any():
+            ended = find_limits(system, r, limits)
+            variables["limit_kind"] = label_variable("limit_kind", ended.kind)
+            if contacts.count > 1:
+                variables["limiting_contact"] = label_variable("limiting_contact", ended.contact)
+    return xr.Dataset(variables, coords=coords)

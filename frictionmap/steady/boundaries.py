@@ -1,14 +1,14 @@
 """Boundaries of the regimes over frequency, as datasets."""
 
-import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
 from ..datasets.physical import with_units
-from ..datasets.variables import coordinate, label_variable, stamp
+from ..datasets.variables import stamp
 from ..model.system import System
-from ..theory.boundaries import one_contact_boundaries
+from ..solvers.choose import engine_of
+from ..theory.refinement import boundary_check
 from ..units.axes import KINDS, ratios
 from ..units.scales import Units, scales_of
 
@@ -69,34 +69,8 @@ def boundaries(
     r = checks.axis(ratios(r, "r", KINDS["r"], scales), "r", least=0.0, most=checks.LARGEST_RATIO)
     mu = checks.axis(mu, "mu", least=1.0)
     system.costs(r)
-    if system.general is None:
-        return with_units(one_contact_boundaries(system, r, mu, units), scales)
-    return with_units(_general_boundaries(system, r, mu, units), scales)
-
-
-def _general_boundaries(system: System, r: np.ndarray, mu: np.ndarray, units: Units | None) -> xr.Dataset:
-    """Boundaries of a system with several contacts, springs, belts or harmonics."""
-    from ..general.boundaries import find_boundaries
-    from ..general.dataset import boundary_variables as general_variables
-    from ..general.dataset import contact_coordinates, refuse_static
-    from ..general.limit_kinds import find_limits
-    from ..general.loops import loop_stick_scales
-
-    assert system.general is not None
-    refuse_static(system.general, mu)
-    axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
-    coords = {name: coordinate(name, axis) for name, axis in axes.items()} | contact_coordinates(system)
-    if system.general.loop:
-        variables = {"beta_stick": label_variable("beta_stick", loop_stick_scales(system, r, mu))}
-    else:
-        limits = find_boundaries(system, r, mu)
-        variables = general_variables(system, limits)
-        if not system.general.elastic.any():
-            ended = find_limits(system, r, limits)
-            variables["limit_kind"] = label_variable("limit_kind", ended.kind)
-            if system.general.count > 1:
-                variables["limiting_contact"] = label_variable("limiting_contact", ended.contact)
-    ds = xr.Dataset(variables, coords=coords)
-    return stamp(
-        ds, "boundaries", "Boundaries of the motion regimes", system, {"r": r, "mu": mu}, units=units
-    )
+    title = "Boundaries of the motion regimes"
+    ds = engine_of(system).boundaries(r, mu)
+    ds = stamp(ds, "boundaries", title, system, {"r": r, "mu": mu}, units=units)
+    ds.attrs |= boundary_check(system, r, mu)
+    return with_units(ds, scales)

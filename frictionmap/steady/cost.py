@@ -15,10 +15,11 @@ from .. import checks
 from ..errors import InputError
 from ..model.settings import CurveSettings, Solver
 from ..model.system import System
+from ..solvers.choose import engine_of
 from ..units.scales import Units
 
 if TYPE_CHECKING:
-    from .quantity_data import QuantityRequest
+    from ..single.quantity_data import QuantityRequest
 
 #: Bytes that a process uses without any cells.
 _BASE = 400e6
@@ -59,7 +60,7 @@ def memory_of_map(
 ) -> float:
     """Estimate the peak memory in bytes of a map with these numbers of values of mu, r and beta."""
     from ..datasets.labels import LABELS
-    from .quantity_data import quantity_request
+    from ..single.quantity_data import quantity_request
 
     of_cycle = [name for name in outputs if LABELS[name].needs == "cycle"]
     return _memory(
@@ -71,8 +72,8 @@ def memory_of_curves(
     counts: Mapping[str, int], masses: int, settings: CurveSettings, units: Units | None = None
 ) -> float:
     """Estimate the peak memory in bytes of response curves with these numbers of values of mu, r and beta."""
-    from .curves import cycle_variables, older_names, plain_outputs
-    from .quantity_data import quantity_request
+    from ..single.curves import cycle_variables, older_names, plain_outputs
+    from ..single.quantity_data import quantity_request
 
     sizes = {**counts, "dof": masses, "harmonic": settings.harmonics + 1, "part": 2}
     names = cycle_variables(settings)
@@ -96,7 +97,7 @@ def _memory(
     what : kind of the dataset, see `labels_of`
     """
     from ..datasets.labels import labels_of
-    from .quantity_data import results
+    from ..single.quantity_data import results
 
     masses, labels = counts["dof"], labels_of(what)
     points = counts.get("points", 1)  # along further axes
@@ -141,15 +142,8 @@ def refuse_map_without_memory(
         States the memory needed and the memory available.
     """
     needed = memory_of_map(counts, system.n, tuple(solver.outputs), units)
-    if system.general is not None:
-        needed += _contact_bytes(counts, system.general.count, system.n)
+    needed += engine_of(system).bytes_per_cell * counts["mu"] * counts["r"] * counts["beta"]
     _refuse(counts, needed, "outputs")
-
-
-def _contact_bytes(counts: Mapping[str, int], contacts: int, masses: int) -> float:
-    """Bytes of the results of every contact and mass in the cells of a general system."""
-    per_cell = 28.0 + 8.0 * 10.0 * contacts + 16.0 * (contacts + masses)
-    return per_cell * counts["mu"] * counts["r"] * counts["beta"]
 
 
 def refuse_curves_without_memory(
@@ -198,7 +192,7 @@ def seconds_of_cells(
     same at every call.  Within a factor 3 of what cells take.
     """
     from ..datasets.labels import LABELS
-    from .maps import FOLLOWED, SEARCHED, SEARCHED_UNIQUE
+    from ..single.maps import FOLLOWED, SEARCHED, SEARCHED_UNIQUE
     from .sweep import regime_map
 
     names = [name for name in solver.outputs if LABELS[name].needs != "coexistence"]

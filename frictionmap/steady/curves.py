@@ -1,7 +1,7 @@
 """Response curves: amplitude, phase, harmonics and energy of steady states over frequency."""
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import asdict, replace
+from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Unpack
 
 import numpy as np
@@ -9,62 +9,16 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
-from ..datasets.labels import OLDER_NAMES
 from ..datasets.physical import with_units
-from ..datasets.variables import coordinate, label_variable, stamp
-from ..jobs import Progress, Watch
-from ..model.settings import CurveSettings, Output, Quantity, Solver, SolverSettings, curve_settings, merged
+from ..datasets.variables import stamp
+from ..jobs import Progress
+from ..model.settings import Quantity, Solver, SolverSettings, curve_settings, merged
 from ..model.system import System
-from ..theory.boundaries import boundary_variables, held_variables
-from ..theory.boundary_curves import Curves
-from ..theory.limit_curves import limit_variables
+from ..single.maps import checked_axes
+from ..single.quantity_data import PARTS
+from ..solvers.choose import engine_of
 from ..units.scales import Units, scales_of
-from .maps import checked_axes, compute
-from .quantity_data import PARTS, VARIABLES, quantity_request, read_result
 from .refinement import reduction_check
-
-#: Outputs of every cell.
-_ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "period", "status")
-
-
-def plain_outputs(asked: CurveSettings) -> list[Output]:
-    """Outputs that curves share with maps."""
-    amplitude: list[Output] = ["contact_amplitude"] if "amplitude" in asked.quantities else []
-    return [*_ALWAYS, *amplitude]
-
-
-def cycle_variables(asked: CurveSettings) -> list[str]:
-    """Variables that are read from the results over a cycle."""
-    return [name for quantity in asked.quantities for name in VARIABLES[quantity]]
-
-
-def older_names(names: Collection[str]) -> dict[str, str]:
-    """Older names under which some of these variables are stored as well, with the current ones."""
-    return {old: new for old, new in OLDER_NAMES["curves"].items() if new in names}
-
-
-def _over_frequency(system: System, axes: Mapping[str, np.ndarray], found: Curves) -> dict[str, xr.Variable]:
-    """Variables that do not depend on beta: responses with the contact held, and motions on the boundary."""
-    held = held_variables(system, axes["r"])
-    turned = {name: label_variable(name, value.values.T, "curves") for name, value in held.items()}
-    return turned | limit_variables(system, axes["r"], axes["mu"], found)
-
-
-def solve_curves(
-    system: System, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
-    progress: Progress | None, watch: Watch | None = None,
-) -> dict[str, xr.Variable]:  # fmt: skip
-    """Compute the variables of `curves` over the axes mu, r and beta; `watch` may end the computation."""
-    basic, names = plain_outputs(asked), cycle_variables(asked)
-    settings = replace(solver, outputs=basic)
-    cells, out = compute(
-        system, axes, settings, quantity_request(names, asked.harmonics), threads, progress, watch
-    )
-    values: dict[str, np.ndarray] = {name: getattr(out, name) for name in basic}
-    values |= {name: read_result(name, cells.results) for name in names}
-    values |= {old: values[new] for old, new in older_names(names).items()}
-    variables = {name: label_variable(name, value, "curves") for name, value in values.items()}
-    return variables | boundary_variables(cells.curves) | _over_frequency(system, axes, cells.curves)
 
 
 def curves(
@@ -156,13 +110,7 @@ def curves(
     axes["dof"] = np.array(system.dofs.numbers)
     if asked.harmonics:
         axes |= {"harmonic": np.arange(asked.harmonics + 1), "part": PARTS}
-    if system.general is not None:
-        from ..general.curves import general_curves
-
-        ds = general_curves(system, axes, solver, asked, progress)
-    else:
-        coords = {name: coordinate(name, values) for name, values in axes.items()}
-        ds = xr.Dataset(solve_curves(system, axes, solver, asked, threads, progress), coords=coords)
+    ds = engine_of(system).curves(axes, solver, asked, threads, progress)
     ds = stamp(ds, "curves", "Response curves", system, grid, solver, asdict(asked), units=units)
     ds.attrs |= reduction_check(system, grid, solver, threads)
     return with_units(ds, scales)

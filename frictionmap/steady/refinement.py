@@ -10,8 +10,8 @@ from ..jobs import Watch
 from ..model.settings import Solver
 from ..model.system import System
 from ..regimes import UNRESOLVED
+from ..single.maps import solve_map
 from ..theory.refinement import boundary_changes, not_compared, one_mu, thinned, with_more_modes
-from .maps import solve_map
 
 #: Frequencies and friction ratios of the coarse map; above mu = 1 no cell is decided by proof, and fewer do.
 _COARSE, _COARSE_ABOVE_ONE = (20, 15), (8, 6)

@@ -1,26 +1,20 @@
 """`response`: one steady state in time, as a dataset."""
 
-from dataclasses import replace
 from typing import SupportsFloat, Unpack
 
 import numpy as np
 import xarray as xr
 
 from .. import checks
-from ..datasets.labels import CELL_VARIABLES, OLDER_NAMES
 from ..datasets.physical import with_units
-from ..datasets.variables import coordinate, label_variable, stamp
+from ..datasets.variables import stamp
 from ..errors import InputError
-from ..general.response import general_response
-from ..model.settings import HARMONICS, Output, Solver, SolverSettings, merged
+from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
-from ..theory.boundaries import boundary_variables
+from ..solvers.choose import engine_of
 from ..theory.refinement import boundary_check
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales, Units, scales_of
-from .motion import MotionRequest, find_motion
-from .quantity_data import PARTS
-from .sweep import sweep
 
 #: Samples of a time history per excitation period.
 POINTS = 2000
@@ -34,16 +28,6 @@ def _commented(ds: xr.Dataset, comment: str) -> xr.Dataset:
     if comment:
         ds.attrs |= {"title": "Motion in time, a part of it", "comment": comment}
     return ds
-
-
-def _further(request: MotionRequest, names: list[Output]) -> dict[str, xr.Variable]:
-    """Compute outputs of the cell of a map that do not follow from the motion in time."""
-    if not names:
-        return {}
-    solver = replace(request.solver, outputs=names)
-    ds = sweep(request.system, request.r, request.beta, request.mu, solver=solver, threads=1)
-    cell = ds.isel(mu=0, r=0, beta=0, missing_dims="ignore")
-    return {name: cell[name].variable for name in names}
 
 
 def _ratio(given: object, name: str, scales: Scales) -> object:
@@ -126,43 +110,9 @@ def response(
     r, beta, mu = _checked_cell(r, beta, mu, scales)
     points = checks.whole(points, "points", least=2, most=_MOST_POINTS)
     cell = {"r": r, "beta": beta, "mu": mu}
-    if system.general is not None:
-        ds = general_response(system, r, beta, mu, solver, points)
-        comment = ds.attrs.get("comment", "")
-        ds = with_units(stamp(ds, "response", _TITLE, system, cell, solver, units=units), scales)
-        return _commented(ds, comment)
-    request = MotionRequest(system, r, beta, mu, solver, points)
-    found = find_motion(request)
-    history, cycle = found.history, found.cycle
-    times, begins, places = history.events
-    variables = {
-        "x": history.x,
-        "v": history.v,
-        "z": history.z,
-        "friction": history.friction,
-        "direction": history.direction,
-        "event_tau": times,
-        "event_direction": begins.astype(np.int8),
-        "event_z": places,
-    }
-    variables |= {old: variables[new] for old, new in OLDER_NAMES["response"].items()}
-    # what a map is asked for comes from its kernels below, to the bit
-    variables |= {name: value for name, value in cycle.items() if name not in solver.outputs}
-    own: dict[str, np.ndarray | float] = {
-        "tau": history.tau,
-        "dof": np.array(system.dofs.numbers),
-        "harmonic": np.arange(HARMONICS + 1),
-        "part": PARTS,
-    }
-    labelled = {name: label_variable(name, values) for name, values in variables.items()}
-    labelled |= {name: v[0, 0] for name, v in boundary_variables(found.curves).items()}
-    labelled |= {
-        name: label_variable(name, CELL_VARIABLES[name].dtype(value)) for name, value in found.summary.items()
-    }
-    labelled |= _further(request, [name for name in solver.outputs if name not in labelled])  # type: ignore[misc]
-    coords = {name: coordinate(name, values) for name, values in {**own, **cell}.items()}
-    ds = xr.Dataset(labelled, coords=coords)  # all at once: piece by piece took a third of the time
+    ds = engine_of(system).motion(r, beta, mu, solver, points)
+    comment = ds.attrs.get("comment", "")
     ds = stamp(ds, "response", _TITLE, system, cell, solver, units=units)
     ds.attrs |= boundary_check(system, np.array([r]), np.array([mu]))
     ds = with_units(ds, scales)
-    return _commented(ds, found.comment)
+    return _commented(ds, comment)

@@ -8,17 +8,17 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
-from ..datasets.labels import GENERAL_VARIABLES, NAMES
+from ..datasets.labels import NAMES
 from ..datasets.physical import with_units
-from ..datasets.variables import coordinate_of_study, indexed, label_variable, stamp
+from ..datasets.variables import coordinate_of_study, stamp
 from ..errors import InputError
 from ..jobs import Progress, Watch
 from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
-from ..theory.boundaries import boundary_variables
+from ..single.maps import checked_axes
+from ..solvers.choose import engine_of
 from ..units.scales import Units, scales_of
-from .maps import checked_axes, solve_map
 from .refinement import reduction_check
 
 
@@ -106,7 +106,7 @@ def swept(
         checks.cells(grid["mu"].size, grid["r"].size, grid["beta"].size, points=variations.count)
         ds = _study(variations, grid, solver, threads, progress, watch)
     first = system if variations is None else variations.at(next(variations.points()))
-    asked = "status" in solver.outputs or first.general is not None
+    asked = "status" in solver.outputs or engine_of(first).states_status
     if not asked and not ds["status"].values.any():
         ds = ds.drop_vars("status")  # kept where any cell is unresolved or averaged
     title = "Motion regimes and stops per cycle"
@@ -126,28 +126,11 @@ def swept(
 
 
 def regime_map(
-    system: System,
-    axes: Mapping[str, np.ndarray],
-    solver: Solver,
-    threads: int | None,
-    progress: Progress | None,
-    watch: Watch | None = None,
-) -> xr.Dataset:
+    system: System, axes: Mapping[str, np.ndarray], solver: Solver, threads: int | None,
+    progress: Progress | None, watch: Watch | None = None,
+) -> xr.Dataset:  # fmt: skip
     """Compute outputs, `status` and boundaries of one system over the axes mu, r and beta."""
-    if system.general is not None:
-        from ..general.dataset import general_map
-
-        return general_map(system, axes, solver, threads, progress, watch)
-    only = [name for name in solver.outputs if name in GENERAL_VARIABLES]
-    if only:
-        raise InputError(
-            f"cannot compute {only[0]} for one rigid contact under one harmonic load: it needs contacts, "
-            f"load_harmonics, wall_velocity, normal_load or contact_stiffness; omit it"
-        )
-    found, curves = solve_map(system, axes, solver, threads, progress, watch)
-    variables = {name: label_variable(name, values) for name, values in found.items()}
-    sizes = {"dof": np.array(system.dofs.numbers)} if "amplitude" in solver.outputs else {}
-    return xr.Dataset(variables | boundary_variables(curves), coords=indexed({**axes, **sizes}))
+    return engine_of(system).map(axes, solver, threads, progress, watch)
 
 
 def _study(

@@ -9,9 +9,9 @@ from .._kernels.engine import segment_table
 from .._kernels.engine.fill import one_cell
 from ..model.settings import Output, Solver, Start
 from ..model.system import System
-from ..steady.cells import Cells, limits
-from ..steady.maps import compute
-from ..steady.scattered import AT_ONCE, scattered_cells
+from ..single.cells import Cells, limits
+from ..single.maps import compute
+from ..single.scattered import AT_ONCE, scattered_cells
 from ..theory.boundary_curves import find_curves
 from .orbits import Sequence
 from .tracing import Window

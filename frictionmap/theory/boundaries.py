@@ -7,7 +7,7 @@ import xarray as xr
 
 from .. import checks
 from ..datasets.labels import BOUNDARIES, LABELS
-from ..datasets.variables import coordinate, label_variable, stamp
+from ..datasets.variables import coordinate, label_variable
 from ..features import (
     all_mass_invariant_points,
     first_harmonic_points,
@@ -18,9 +18,7 @@ from ..features import (
 )
 from ..model.modes import wrapped
 from ..model.system import System
-from ..units.scales import Units
 from .boundary_curves import Curves, find_curves
-from .refinement import boundary_check
 
 #: Number of invariant points listed in addition to one per mode, from the highest down; below them hardly any
 #: motion is continuous.  Points of masses are listed for up to `_LISTED_MASSES` masses, because their cost
@@ -106,7 +104,7 @@ def held_variables(system: System, r: np.ndarray) -> dict[str, xr.Variable]:
     }
 
 
-def one_contact_boundaries(system: System, r: np.ndarray, mu: np.ndarray, units: Units | None) -> xr.Dataset:
+def one_contact_boundaries(system: System, r: np.ndarray, mu: np.ndarray) -> xr.Dataset:
     """Boundaries of a system of one rigid contact under one harmonic load; `r` and `mu` are checked axes."""
     found = find_curves(system, r, mu)
     functions = {
@@ -121,8 +119,4 @@ def one_contact_boundaries(system: System, r: np.ndarray, mu: np.ndarray, units:
     variables |= {name: label_variable(name, v) for name, v in functions.items()}
     variables |= _feature_variables(system, r, mu)
     axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
-    ds = xr.Dataset(variables, coords={name: coordinate(name, axis) for name, axis in axes.items()})
-    title = "Boundaries of the motion regimes"
-    ds = stamp(ds, "boundaries", title, system, {"r": r, "mu": mu}, units=units)
-    ds.attrs |= boundary_check(system, r, mu)
-    return ds
+    return xr.Dataset(variables, coords={name: coordinate(name, axis) for name, axis in axes.items()})

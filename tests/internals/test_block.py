@@ -14,7 +14,7 @@ import frictionmap as fm
 from frictionmap._kernels.structure import block, oscillators
 from frictionmap._kernels.structure.oscillators import AT_LIMIT, STARTS_INSIDE, make_scratch, make_state
 from frictionmap._kernels.structure.state import make_structure
-from frictionmap.steady.cells import Cells
+from frictionmap.single.cells import Cells
 
 pytestmark = pytest.mark.plain
 

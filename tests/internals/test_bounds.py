@@ -18,7 +18,7 @@ from frictionmap._kernels.structure import sliding_orbit as structure_orbit
 from frictionmap._kernels.structure.oscillators import COLUMNS, make_state
 from frictionmap._kernels.structure.state import LOAD, SPEED, W, make_structure
 from frictionmap._kernels.taylor_series import MAX_TERMS
-from frictionmap.steady.cells import Cells
+from frictionmap.single.cells import Cells
 from frictionmap.theory.boundary_curves import one_mass_curves
 
 decay = callable_kernel(closed_form.decay)

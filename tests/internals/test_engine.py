@@ -11,8 +11,8 @@ from frictionmap._kernels.engine import segment_table
 from frictionmap._kernels.engine.fill import RESTART, one_cell
 from frictionmap.datasets.labels import CELL_VARIABLES
 from frictionmap.model.settings import OUTPUTS, Solver
-from frictionmap.steady.cells import Cells, limits
-from frictionmap.steady.maps import TILE, plan
+from frictionmap.single.cells import Cells, limits
+from frictionmap.single.maps import TILE, plan
 
 ONE = fm.System("joined-base-wall", damping_ratios=0.001)
 FIVE = fm.System(contact_masses=[2], mass_ratios=[1.0] * 5, stiffness_ratios=[1.0] * 5, damping_ratios=0.02)

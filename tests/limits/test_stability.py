@@ -17,7 +17,7 @@ from frictionmap._kernels.structure.events import UNDER_WAY
 from frictionmap._kernels.structure.newton import make_workspace
 from frictionmap._kernels.structure.oscillators import make_scratch, make_state
 from frictionmap._kernels.structure.state import make_structure
-from frictionmap.steady.cells import Cells
+from frictionmap.single.cells import Cells
 
 after_slide = callable_kernel(follow.after_slide)
 slide_on = callable_kernel(follow.slide_on)

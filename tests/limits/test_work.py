@@ -12,7 +12,7 @@ from frictionmap import regimes
 from frictionmap._kernels.compiler.packed import packed
 from frictionmap._kernels.engine.march import steady_state
 from frictionmap._kernels.engine.motion import at_frequency, contact_at, forget_neighbour, start
-from frictionmap.steady.cells import Cells, limits
+from frictionmap.single.cells import Cells, limits
 
 LEAST = 1e-6
 

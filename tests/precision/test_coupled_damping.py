@@ -9,7 +9,7 @@ import frictionmap as fm
 from benchmarks.references.naive import naive_steady_state
 from frictionmap import regimes
 from frictionmap.model.coupled_modes import CoupledModel, coupled_model
-from frictionmap.steady import kernel_data
+from frictionmap.single import kernel_data
 from frictionmap.steady.points import steady_states
 from frictionmap.theory.boundary_curves import find_curves
 

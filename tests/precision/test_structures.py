@@ -20,8 +20,8 @@ from frictionmap._kernels.structure.newton import make_workspace
 from frictionmap._kernels.structure.oscillators import COLUMNS, WW, WZ, ZW, ZZ, D, K, make_scratch
 from frictionmap._kernels.structure.state import make_structure
 from frictionmap.model.held_structure import held_structure
-from frictionmap.steady.cells import Cells
-from frictionmap.steady.motion import MotionRequest, _find
+from frictionmap.single.cells import Cells
+from frictionmap.single.motion import MotionRequest, _find
 
 decay = callable_kernel(closed_form.decay)
 fill_steps = callable_kernel(oscillators.fill_steps)

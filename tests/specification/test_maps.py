@@ -14,7 +14,7 @@ from structures import chain_matrices, pendants
 import frictionmap as fm
 from frictionmap import jobs, regimes
 from frictionmap.files.config import load_config
-from frictionmap.steady.kernel_data import structure_arrays
+from frictionmap.single.kernel_data import structure_arrays
 from frictionmap.theory.boundary_curves import find_curves
 
 

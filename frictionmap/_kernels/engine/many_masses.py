@@ -142,7 +142,7 @@ def contact_at(system, m, i, beta, mu):
 
 @kernel
 def start(motion, system, i, contact, moving):
-    """Set the initial state, see `steady/kernel_data`."""
+    """Set the initial state, see `single/kernel_data`."""
     st, state = motion.st, motion.state
     starts = system.moving if moving else system.rest
     for j in range(st.n):

@@ -1,0 +1,86 @@
+"""The engine of any number of contacts, springs in contacts, belts and periodic loads."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..general.boundaries import find_boundaries
+from ..general.held import least_static_friction
+from ..general.problem import least_ratio
+from ..jobs import Progress, Watch
+from ..model.settings import CurveSettings, Solver
+from .interface import Engine
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..single.points import States
+
+
+class GeneralEngine(Engine):
+    """Any piecewise linear system: its motion is followed from a phase of the load to the next return."""
+
+    has_closed_limits = False
+    states_status = True
+    order_step = 1
+
+    @property
+    def kernels(self) -> str:
+        return "general"
+
+    @property
+    def least_ratio(self) -> float:
+        return least_ratio(self.system)
+
+    @property
+    def least_stick_ratio(self) -> float:
+        return 0.0
+
+    def check_static(self, mu: np.ndarray) -> None:
+        from ..general.dataset import refuse_static
+
+        refuse_static(self.system.contact_system, mu)
+
+    @property
+    def bytes_per_cell(self) -> float:
+        contacts, masses = self.system.contact_system.count, self.system.n
+        return 28.0 + 8.0 * 10.0 * contacts + 16.0 * (contacts + masses)
+
+    def needed_friction(self, r: np.ndarray) -> np.ndarray:
+        return least_static_friction(self.system, r)
+
+    def no_stop_limit(self, r: np.ndarray, mu: float, watch: Watch | None) -> np.ndarray:
+        return find_boundaries(self.system, r, np.array([mu]), watch=watch, intervals=1).beta_lim[0]
+
+    def boundaries(self, r: np.ndarray, mu: np.ndarray) -> "xr.Dataset":
+        from ..general.dataset import general_boundaries
+
+        return general_boundaries(self.system, r, mu)
+
+    def map(
+        self, axes: Mapping[str, np.ndarray], solver: Solver, threads: int | None, progress: Progress | None,
+        watch: Watch | None = None,
+    ) -> "xr.Dataset":  # fmt: skip
+        from ..general.dataset import general_map
+
+        return general_map(self.system, axes, solver, threads, progress, watch)
+
+    def curves(
+        self, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
+        progress: Progress | None,
+    ) -> "xr.Dataset":  # fmt: skip
+        from ..general.curves import general_curves
+
+        return general_curves(self.system, axes, solver, asked, progress)
+
+    def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
+        from ..general.response import general_response
+
+        return general_response(self.system, r, beta, mu, solver, points)
+
+    def states(self, r: np.ndarray, beta: np.ndarray, mu: float) -> "list[States]":
+        from ..general.first_harmonics import steady_phasors
+        from ..single.points import States
+
+        return [States(*steady_phasors(self.system, r, beta))]

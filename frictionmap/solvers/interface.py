@@ -1,0 +1,106 @@
+"""What an engine answers about a system."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..jobs import Progress, Watch
+from ..model.settings import CurveSettings, Solver
+from ..model.system import System
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..single.points import States
+
+
+class Engine(ABC):
+    """Answers about one system.
+
+    Axes are mappings of mu, r and beta to increasing arrays; datasets come with variables and coordinates,
+    without provenance.
+    """
+
+    #: Whether beta_lim is a closed form; else motions are followed for it, a thousand times as long.
+    has_closed_limits: ClassVar[bool]
+
+    #: Whether maps always have `status`; else only where any cell is unresolved or averaged.
+    states_status: ClassVar[bool]
+
+    #: Distance of the orders of harmonics in the friction force.
+    order_step: ClassVar[int]
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+
+    @property
+    @abstractmethod
+    def kernels(self) -> str:
+        """Name of the kernels that it compiles."""
+
+    @property
+    @abstractmethod
+    def least_ratio(self) -> float:
+        """Least r > 0 at which motions are computed."""
+
+    @property
+    @abstractmethod
+    def least_stick_ratio(self) -> float:
+        """Least r at which the boundary to permanent sticking is computed."""
+
+    @abstractmethod
+    def check_static(self, mu: np.ndarray) -> None:
+        """Refuse static-to-kinetic ratios that the contacts cannot have.
+
+        Raises
+        ------
+        InputError
+            mu > 1, and all contacts are elastic.
+        """
+
+    @property
+    @abstractmethod
+    def bytes_per_cell(self) -> float:
+        """Bytes of results of a map in a cell beside its outputs."""
+
+    @abstractmethod
+    def needed_friction(self, r: np.ndarray) -> np.ndarray:
+        """Friction with which each contact holds, over the load, (n_r, N): half the range of its force."""
+
+    @abstractmethod
+    def no_stop_limit(self, r: np.ndarray, mu: float, watch: Watch | None) -> np.ndarray:
+        """beta_lim, (n_r,), of a system without elastic contacts."""
+
+    @abstractmethod
+    def boundaries(self, r: np.ndarray, mu: np.ndarray) -> "xr.Dataset":
+        """Boundaries of the regimes over r and mu; see `frictionmap.boundaries`."""
+
+    @abstractmethod
+    def map(
+        self, axes: Mapping[str, np.ndarray], solver: Solver, threads: int | None, progress: Progress | None,
+        watch: Watch | None = None,
+    ) -> "xr.Dataset":  # fmt: skip
+        """Outputs, `status` and boundaries of all cells; `watch` may end the computation."""
+
+    @abstractmethod
+    def curves(
+        self, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
+        progress: Progress | None,
+    ) -> "xr.Dataset":  # fmt: skip
+        """Response curves; `axes` also holds the axes of masses and harmonics."""
+
+    @abstractmethod
+    def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
+        """One steady state in time; the attribute `comment` says what part of an irregular motion it is.
+
+        Raises
+        ------
+        NoSteadyState
+            None exists, or none was found.
+        """
+
+    @abstractmethod
+    def states(self, r: np.ndarray, beta: np.ndarray, mu: float) -> "list[States]":
+        """First harmonics of the possible steady states at points (k,); see `steady.points`."""

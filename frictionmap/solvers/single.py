@@ -1,0 +1,80 @@
+"""The engine of one rigid contact under one harmonic load."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..jobs import Progress, Watch
+from ..model.settings import CurveSettings, Solver
+from ..theory.boundary_curves import find_curves, least_ratio
+from .interface import Engine
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..single.points import States
+
+
+class SingleEngine(Engine):
+    """One rigid contact under one harmonic load: closed forms, and mirrored slides."""
+
+    has_closed_limits = True
+    states_status = False
+    order_step = 2  # its friction is antiperiodic
+
+    @property
+    def kernels(self) -> str:
+        return "one" if self.system.normalised else "structure"
+
+    @property
+    def least_ratio(self) -> float:
+        return least_ratio(self.system)
+
+    @property
+    def least_stick_ratio(self) -> float:
+        return least_ratio(self.system)
+
+    def check_static(self, mu: np.ndarray) -> None:
+        """Any mu >= 1 is possible."""
+
+    @property
+    def bytes_per_cell(self) -> float:
+        return 0.0
+
+    def needed_friction(self, r: np.ndarray) -> np.ndarray:
+        return find_curves(self.system, r, np.array([1.0])).beta_stick[0][:, np.newaxis]
+
+    def no_stop_limit(self, r: np.ndarray, mu: float, watch: Watch | None) -> np.ndarray:
+        return find_curves(self.system, r, np.array([mu])).beta_lim[0]
+
+    def boundaries(self, r: np.ndarray, mu: np.ndarray) -> "xr.Dataset":
+        from ..theory.boundaries import one_contact_boundaries
+
+        return one_contact_boundaries(self.system, r, mu)
+
+    def map(
+        self, axes: Mapping[str, np.ndarray], solver: Solver, threads: int | None, progress: Progress | None,
+        watch: Watch | None = None,
+    ) -> "xr.Dataset":  # fmt: skip
+        from ..single.dataset import single_map
+
+        return single_map(self.system, axes, solver, threads, progress, watch)
+
+    def curves(
+        self, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
+        progress: Progress | None,
+    ) -> "xr.Dataset":  # fmt: skip
+        from ..single.curves import single_curves
+
+        return single_curves(self.system, axes, solver, asked, threads, progress)
+
+    def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
+        from ..single.response import single_response
+
+        return single_response(self.system, r, beta, mu, solver, points)
+
+    def states(self, r: np.ndarray, beta: np.ndarray, mu: float) -> "list[States]":
+        from ..single.points import possible_states
+
+        return possible_states(self.system, r, beta, mu)

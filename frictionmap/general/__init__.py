@@ -9,15 +9,16 @@ loops            permanent sticking of contacts that close a loop
 closed_limits    friction without stops in closed form, where there is one
 no_stop          intervals of friction without stops
 boundaries       boundaries over r: permanent sticking, no stops, one-way sliding on belts
+limit_kinds      what ends the motion without stops, and which contact stops
 partial          least friction at which one contact sticks while the others move
 starts           initial states: at rest, or in a large sliding motion
 still            masses that do not move
 maps             the cells of a map, on several threads
 resting_starts   motions from many states in which a contact is at its limit of friction (mu > 1)
 dataset          maps and boundaries as labelled variables
+responses        sizes of steady states on a grid and at scattered points
 recorded         one steady state and the series of its steps, from the kernels
 steps            one steady state as the series of its steps
-limit_kinds      what ends the motion without stops, and which contact stops
 cycle            harmonics, works and phases of a steady state
 response         one steady state in time
 curves           response curves

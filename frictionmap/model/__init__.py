@@ -8,6 +8,7 @@ settings            settings of the solver and of response curves; names of the 
 periodic_load       loads of several harmonics: waveforms, tables, samples
 contact             a contact with its spring, belt and normal load
 general             systems with several contacts or harmonics: checks, parallel contacts, loops
+sizes               sizes of steady states that a design is about
 matrices            mass, stiffness and damping matrices: small, dense, definite
 phasors             complex arrays as pairs of real ones, which are rounded alike at any position
 damped_oscillators  a damped structure as oscillators that do not depend on r

@@ -9,6 +9,7 @@ quantity_limits  values that kernels do not compute: r = 0, resonances without a
 cells            the data of cells, and the jobs that fill them
 maps             cells in parallel: which of them are decided by formula, progress
 scattered        cells at a list of points (r, beta)
+responses        sizes of steady states on a grid and at scattered points
 points           first harmonics at a list of points (r, beta)
 dataset          maps as labelled variables
 curves           response curves as labelled variables

@@ -4,8 +4,8 @@
 module           what is in it
 ===============  ======================================================================
 interface        what an engine answers
-single           the engine of one rigid contact under one harmonic load
 general          the engine of any number of contacts, springs, belts and periodic loads
+single           the engine of one rigid contact under one harmonic load
 choose           the engine of a system
 ===============  ======================================================================
 """

@@ -10,6 +10,7 @@ from ..general.held import least_static_friction
 from ..general.problem import least_ratio
 from ..jobs import Progress, Watch
 from ..model.settings import CurveSettings, Solver
+from ..model.sizes import Sizes, Wanted
 from .interface import Engine
 
 if TYPE_CHECKING:
@@ -78,6 +79,27 @@ class GeneralEngine(Engine):
         from ..general.response import general_response
 
         return general_response(self.system, r, beta, mu, solver, points)
+
+    @property
+    def sizes(self) -> tuple[str, ...]:
+        from ..general.responses import QUANTITIES
+
+        return QUANTITIES
+
+    def sizes_on_grid(
+        self, wanted: Wanted, axes: dict[str, np.ndarray], solver: Solver, threads: int, watch: Watch | None
+    ) -> Sizes:
+        from ..general.responses import sizes_on_grid
+
+        return sizes_on_grid(self.system, wanted, axes, solver, threads, watch)
+
+    def sizes_at(
+        self, wanted: Wanted, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver, threads: int,
+        watch: Watch | None,
+    ) -> Sizes:  # fmt: skip
+        from ..general.responses import sizes_at
+
+        return sizes_at(self.system, wanted, r, beta, mu, solver, threads, watch)
 
     def states(self, r: np.ndarray, beta: np.ndarray, mu: float) -> "list[States]":
         from ..general.first_harmonics import steady_phasors

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..jobs import Progress, Watch
 from ..model.settings import CurveSettings, Solver
+from ..model.sizes import Sizes, Wanted
 from ..model.system import System
 
 if TYPE_CHECKING:
@@ -100,6 +101,24 @@ class Engine(ABC):
         NoSteadyState
             None exists, or none was found.
         """
+
+    @property
+    @abstractmethod
+    def sizes(self) -> tuple[str, ...]:
+        """Quantities of `Wanted` on offer."""
+
+    @abstractmethod
+    def sizes_on_grid(
+        self, wanted: Wanted, axes: dict[str, np.ndarray], solver: Solver, threads: int, watch: Watch | None
+    ) -> Sizes:
+        """Sizes over r and beta at one mu, (n_r, n_beta); the outputs of the settings do not matter."""
+
+    @abstractmethod
+    def sizes_at(
+        self, wanted: Wanted, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver, threads: int,
+        watch: Watch | None,
+    ) -> Sizes:  # fmt: skip
+        """Sizes at points (k,), in groups of few that are neighbours in beta."""
 
     @abstractmethod
     def states(self, r: np.ndarray, beta: np.ndarray, mu: float) -> "list[States]":

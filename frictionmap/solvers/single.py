@@ -1,12 +1,16 @@
 """The engine of one rigid contact under one harmonic load."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import regimes
 from ..jobs import Progress, Watch
+from ..model.general import contacts_of
 from ..model.settings import CurveSettings, Solver
+from ..model.sizes import Sizes, Wanted
 from ..theory.boundary_curves import find_curves, least_ratio
 from .interface import Engine
 
@@ -73,6 +77,46 @@ class SingleEngine(Engine):
         from ..single.response import single_response
 
         return single_response(self.system, r, beta, mu, solver, points)
+
+    @property
+    def sizes(self) -> tuple[str, ...]:
+        from ..single.responses import QUANTITIES
+
+        return QUANTITIES
+
+    def sizes_on_grid(
+        self, wanted: Wanted, axes: dict[str, np.ndarray], solver: Solver, threads: int, watch: Watch | None
+    ) -> Sizes:
+        from ..single.responses import sizes_on_grid
+
+        found = sizes_on_grid(self.system, wanted, axes, solver, threads, watch)
+        at = np.broadcast_arrays(axes["r"][:, np.newaxis], axes["beta"])
+        return self._with_irregular(found, wanted, at, axes["mu"], solver, threads, watch)
+
+    def sizes_at(
+        self, wanted: Wanted, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver, threads: int,
+        watch: Watch | None,
+    ) -> Sizes:  # fmt: skip
+        from ..single.responses import sizes_at
+
+        found = sizes_at(self.system, wanted, r, beta, mu, solver)
+        return self._with_irregular(found, wanted, (r, beta), np.array([mu]), solver, threads, watch)
+
+    def _with_irregular(
+        self, found: Sizes, wanted: Wanted, at: Sequence[np.ndarray], mu: np.ndarray, solver: Solver,
+        threads: int, watch: Watch | None,
+    ) -> Sizes:  # fmt: skip
+        """Sizes with the largest amplitudes of masses in irregular motions, which the other engine keeps."""
+        which = np.isnan(found.size) & (found.status == regimes.IRREGULAR)
+        if wanted.quantity != "amplitude" or not which.any():
+            return found
+        from .general import GeneralEngine
+
+        twin = GeneralEngine(replace(self.system, contacts=contacts_of(self.system)))
+        axes = {"mu": mu, "r": at[0][which], "beta": at[1][which][:, np.newaxis]}
+        size = found.size.copy()
+        size[which] = twin.sizes_on_grid(wanted, axes, solver, threads, watch).size[:, 0]
+        return found._replace(size=size)
 
     def states(self, r: np.ndarray, beta: np.ndarray, mu: float) -> "list[States]":
         from ..single.points import possible_states

@@ -265,7 +265,8 @@ def contact_rows(masses: Sequence[int | str], kind: str, dofs: Dofs, key: str) -
 
 def vector_of(contact: Contact, dofs: Dofs, key: str) -> np.ndarray:
     """c (n,) of a contact: z = c.x - s u; `key` as in `contact_rows`."""
-    rows = dofs.rows(contact_rows(contact.masses, contact.kind, dofs, key))
+    masses: tuple = contact.masses  # type: ignore[assignment]
+    rows = dofs.rows(contact_rows(masses, contact.kind, dofs, key))
     c = np.zeros(dofs.n)
     c[rows[-1]] = 1.0
     if len(rows) == 2:

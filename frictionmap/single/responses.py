@@ -22,7 +22,7 @@ _ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "status")
 QUANTITIES = (*_OUTPUTS, *_OF_CYCLE)
 
 
-def _asked(wanted: Wanted, solver: Solver) -> tuple[Solver, QuantityRequest | None]:
+def _settings_and_request(wanted: Wanted, solver: Solver) -> tuple[Solver, QuantityRequest | None]:
     """Settings and request of what is read."""
     if wanted.quantity in _OUTPUTS:
         return replace(solver, outputs=[*_ALWAYS, _OUTPUTS[wanted.quantity]]), None
@@ -44,7 +44,7 @@ def sizes_on_grid(
     watch: Watch | None,
 ) -> Sizes:  # fmt: skip
     """Sizes over the axes r and beta, at one mu, (n_r, n_beta)."""
-    settings, request = _asked(wanted, solver)
+    settings, request = _settings_and_request(wanted, solver)
     cells, out = compute(system, axes, settings, request, threads, None, watch)
     return _read(wanted, cells, out, (0,))
 
@@ -53,6 +53,6 @@ def sizes_at(
     system: System, wanted: Wanted, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver
 ) -> Sizes:
     """Sizes at points (k,) that increase in r."""
-    settings, request = _asked(wanted, solver)
+    settings, request = _settings_and_request(wanted, solver)
     found = scattered_cells(system, r, beta, mu, settings, request)
     return _read(wanted, found.cells, found.out, (0, np.arange(r.size), found.column))

@@ -255,7 +255,7 @@ REFUSED = [
     ({"contacts": [{**WALL, "ratio": -1}]}, "contacts[1].ratio must be >= 0; got -1"),
     ({"contacts": [{**WALL, "stiffness": 0}]}, "contacts[1].stiffness must be > 0; got 0"),
     ({"contacts": [{**WALL, "stiffness": 1, "mu": 2}]}, "contacts[1].mu must be 1 for a contact"),
-    ({"contacts": [{**WALL, "masses": [2]}]}, "contact_masses[0] must be <= 1; got 2"),
+    ({"contacts": [{**WALL, "masses": [2]}]}, "contacts[1].masses[0] must be <= 1; got 2"),
     ({"contacts": [{**WALL, "force": 0.0}]}, "contacts must have a ratio or a force > 0; got none"),
     ({"contacts": [{**WALL, "width": 1}]}, "unknown key 'contacts[1].width'"),
     ({"contacts": [WALL], "contact_stiffness": 1.0}, "cannot use contact_stiffness with contacts"),

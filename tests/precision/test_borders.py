@@ -75,6 +75,7 @@ def borders_of(number):
     return fm.borders(system, r, beta)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", range(len(WINDOWS)))
 def test_cells_next_to_borders_have_the_counts(number):
     """Points evenly along the borders, away from their ends, where two borders are next to each other."""
@@ -244,6 +245,7 @@ def test_what_is_refused():
         fm.borders(fm.System(contact_stiffness=2.0), [0.1, 1.0], [0.1, 1.0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mu", "r", "beta", "kinds"),
     [

@@ -103,6 +103,7 @@ def test_motions_that_stop_with_noise():
         assert np.abs((ds.estimate - truth) / ds.standard_error).max() < 4.0
 
 
+@pytest.mark.slow
 def test_outliers_of_a_table_have_little_weight():
     """A lag 25 errors off, an amplitude 40: friction is where it is without them, errors given or not."""
     sets, f, lag, ratio = table(WALL, 5)

@@ -56,6 +56,7 @@ def test_time_stepping(name, r, share):
     assert off[1] < 1e-4
 
 
+@pytest.mark.slow
 def test_harmonic_balance():
     scene = SCENES[ELASTIC]
     low, high = stick_slip_range(scene.system(), 0.7)

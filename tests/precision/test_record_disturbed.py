@@ -183,6 +183,7 @@ def test_a_range_that_ends_within_the_motion_clips(motion, noise):
     np.testing.assert_array_equal(unclipped(time, cut), np.abs(x) < 1.2)
 
 
+@pytest.mark.slow
 def test_a_record_of_a_mass_that_sticks_has_no_warning_of_clipping(motion):
     time, base, _ = synthetic(RIG, motion, 1)
     x = quantised(time, 1e-3, motion)

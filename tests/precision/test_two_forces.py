@@ -28,6 +28,7 @@ def answer():
     return design.two_forces(CHAIN, BAND, ratio=(0.5, 2.0), beta=FRICTION)
 
 
+@pytest.mark.slow
 def test_brute_force_finds_nothing_better(answer):
     """On a grid of frequencies a peak looks lower than it is, by less than 1e-3 here."""
     r, beta = np.linspace(*BAND, 141), np.linspace(0.3, 1.5, 25)

@@ -75,6 +75,7 @@ def value(ds, name, what="estimate"):
     return float(ds[what].sel(parameter=name))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kt", [5.0, 10.0, 20.0])
 def test_a_hidden_spring_of_a_record_is_found(kt):
     """Before, x_F was off by up to 20 % under the words "friction found"."""
@@ -97,6 +98,7 @@ def test_a_hidden_spring_with_held_values():
     assert [int(ds.known.sel(parameter=name)) for name in ("f_n", "zeta", "contact_stiffness")] == [1, 1, 0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("late", [2.0, 5.0, -2.0])
 def test_a_late_channel_is_found(late):
     truth = late / 360.0 / STICKS.f
@@ -150,6 +152,7 @@ def test_friction_that_falls_with_speed_is_not_called_found(held):
     assert "must not be used" in headline(ds)
 
 
+@pytest.mark.slow
 def test_a_record_of_another_system_is_refused():
     """As a decay is whose residuals are far above the noise and a large part of the motion."""
     time, base, x = sampled(STICKS, 6)
@@ -157,6 +160,7 @@ def test_a_record_of_another_system_is_refused():
         fit((time, base, np.abs(x - x.mean())))
 
 
+@pytest.mark.slow
 def test_parameters_that_are_listed_are_those_that_are_fitted():
     """`free` says what is fitted: what would explain the record is named, not added."""
     data = sampled(STICKS, 3, late=5.0)
@@ -239,6 +243,7 @@ def forced(data, **more):
     return fm.identify.forced(f, lag, ratio, sets=sets, **{"known": {"mu": 1.0}, **more})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("given", [ERRORS, {}])
 def test_a_hidden_spring_of_forced_responses_is_found(given):
     """Before, chi square of 100 and more stood in a warning under "friction found"."""
@@ -248,6 +253,7 @@ def test_a_hidden_spring_of_forced_responses_is_found(given):
     assert holds(ds, beta_1=0.4, beta_2=0.8, f_n=TABLE.f_n, zeta=TABLE.zeta, contact_stiffness=8.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("given", [ERRORS, {}])
 def test_late_lags_and_wrong_gains_of_forced_responses_are_found(given):
     truth = {"beta_1": 0.2, "beta_2": 0.4, "f_n": TABLE.f_n, "zeta": TABLE.zeta}
@@ -259,6 +265,7 @@ def test_late_lags_and_wrong_gains_of_forced_responses_are_found(given):
     assert "unequal gains of the channels (gain" in headline(loud)
 
 
+@pytest.mark.slow
 def test_forced_responses_that_nothing_explains_are_not_called_found():
     """Every second lag is off by several of its errors."""
     f, lag, ratio, sets = table(4)

@@ -55,6 +55,7 @@ def ends(ds):
     return [[begin, end if np.isfinite(end) else None] for begin, end in pairs]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "of", "arguments", "band"),
     [

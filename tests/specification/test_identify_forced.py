@@ -127,6 +127,7 @@ def test_no_stop_no_mu(rig, capsys):
     assert "warning: no fitted motion sticks: the data do not determine mu, which is held at 1" in out
 
 
+@pytest.mark.slow
 def test_lags_that_no_friction_gives(rig, capsys):
     """Refused by name; left out on request, with a warning."""
     lines = [*LINES, "2,5.8332,60,1.0,1.5"]

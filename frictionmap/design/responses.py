@@ -19,9 +19,6 @@ from .watching import current_watch, look
 ResponseQuantity = Literal["amplitude", "first_harmonic", "contact", "transmitted_force"]
 QUANTITIES: tuple[str, ...] = get_args(ResponseQuantity)
 
-#: Points computed together, neighbours in beta: cells that formulas decide are filled for every beta between.
-_TOGETHER = 128
-
 
 class Response(NamedTuple):
     """A quantity of the steady state, over P/k1 (Y) or, of a force, over P."""
@@ -97,23 +94,14 @@ class Responses:
 
     def at(self, r: np.ndarray, beta: np.ndarray) -> Values:
         """Values at points r > 0 and beta >= 0, (k,)."""
-        order = np.argsort(beta, kind="stable")
-        chunks = [order[first : first + _TOGETHER] for first in range(0, r.size, _TOGETHER)]
-        found = joined_values([self._scattered(r[chunk], beta[chunk]) for chunk in chunks])
-        back = np.argsort(order, kind="stable")
-        return Values(*(array[back] for array in found))
-
-    def _scattered(self, r: np.ndarray, beta: np.ndarray) -> Values:
-        order = np.argsort(r, kind="stable")
-        at = r[order], beta[order]
         parts = []
         for solver in self._solvers:
             look()
-            found = self._engine.sizes_at(self._wanted, *at, self.mu, solver, self._threads, current_watch())
+            found = self._engine.sizes_at(
+                self._wanted, r, beta, self.mu, solver, self._threads, current_watch()
+            )
             parts.append(_values(found))
-        values = _largest(parts)
-        back = np.argsort(order, kind="stable")
-        return Values(*(array[back] for array in values))
+        return _largest(parts)
 
 
 def _values(found: Sizes) -> Values:

@@ -19,11 +19,14 @@ _OUTPUTS: dict[str, Output] = {"amplitude": "amplitude", "contact": "contact_amp
 
 _ALWAYS: tuple[Output, ...] = ("regime", "stops_per_cycle", "status")
 
+#: Points computed together, neighbours in beta: cells that formulas decide are filled for every beta between.
+_TOGETHER = 128
+
 QUANTITIES = (*_OUTPUTS, *_OF_CYCLE)
 
 
 def _settings_and_request(wanted: Wanted, solver: Solver) -> tuple[Solver, QuantityRequest | None]:
-    """Settings and request of what is read."""
+    """Settings and request that give a size."""
     if wanted.quantity in _OUTPUTS:
         return replace(solver, outputs=[*_ALWAYS, _OUTPUTS[wanted.quantity]]), None
     return replace(solver, outputs=_ALWAYS), quantity_request((_OF_CYCLE[wanted.quantity],))
@@ -50,9 +53,20 @@ def sizes_on_grid(
 
 
 def sizes_at(
-    system: System, wanted: Wanted, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver
-) -> Sizes:
-    """Sizes at points (k,) that increase in r."""
+    system: System, wanted: Wanted, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver,
+    watch: Watch | None,
+) -> Sizes:  # fmt: skip
+    """Sizes at points (k,); `watch` may end the computation."""
     settings, request = _settings_and_request(wanted, solver)
-    found = scattered_cells(system, r, beta, mu, settings, request)
-    return _read(wanted, found.cells, found.out, (0, np.arange(r.size), found.column))
+    by_beta = np.argsort(beta, kind="stable")
+    parts, places = [], []
+    for first in range(0, r.size, _TOGETHER):
+        if watch is not None:
+            watch()
+        some = by_beta[first : first + _TOGETHER]
+        some = some[np.argsort(r[some], kind="stable")]
+        found = scattered_cells(system, r[some], beta[some], mu, settings, request)
+        parts.append(_read(wanted, found.cells, found.out, (0, np.arange(some.size), found.column)))
+        places.append(some)
+    back = np.argsort(np.concatenate(places), kind="stable")
+    return Sizes(*(np.concatenate(arrays)[back] for arrays in zip(*parts, strict=True)))

@@ -118,7 +118,7 @@ class Engine(ABC):
         self, wanted: Wanted, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver, threads: int,
         watch: Watch | None,
     ) -> Sizes:  # fmt: skip
-        """Sizes at points (k,), in groups of few that are neighbours in beta."""
+        """Sizes at points r > 0 and beta >= 0, (k,); the outputs of the settings do not matter."""
 
     @abstractmethod
     def states(self, r: np.ndarray, beta: np.ndarray, mu: float) -> "list[States]":

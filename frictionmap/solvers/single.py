@@ -99,7 +99,7 @@ class SingleEngine(Engine):
     ) -> Sizes:  # fmt: skip
         from ..single.responses import sizes_at
 
-        found = sizes_at(self.system, wanted, r, beta, mu, solver)
+        found = sizes_at(self.system, wanted, r, beta, mu, solver, watch)
         return self._with_irregular(found, wanted, (r, beta), np.array([mu]), solver, threads, watch)
 
     def _with_irregular(

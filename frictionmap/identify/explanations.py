@@ -179,7 +179,7 @@ def _words(cause: Cause) -> str:
 
 def _otherwise(causes: list[Cause]) -> str:
     """Words about a model that explains the data with another parameter only."""
-    several = ", which they do not tell apart" if len(causes) > 1 else ""
+    several = ", which the data do not distinguish" if len(causes) > 1 else ""
     with_them = " or ".join(_words(cause) for cause in causes)
     new = [cause.name for cause in causes if cause.name in ADDED]
     held = [cause.name for cause in causes if cause.name not in ADDED]

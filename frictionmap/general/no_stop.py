@@ -10,7 +10,7 @@ from .._kernels.general.reach import Search
 from ..jobs import Job, Watch, run_jobs
 from ..model.system import System
 from .closed_limits import closed_limits, has_closed_limits
-from .held import orders_of, sliding_phasors, solved
+from .held import orders_of, rest_scales, sliding_phasors, solved
 from .problem import ModalSystem, general_of, problem_of
 
 #: Where the boundary to sticking is infinite: beta up to which stops are looked for, over the scale.
@@ -71,14 +71,6 @@ def linear_states(problem: Problem, r: np.ndarray, wall: float) -> tuple[np.ndar
     return np.where(grows[:, np.newaxis, np.newaxis], 0.0, found), tallest, grows
 
 
-def rest_scales(kinetic: np.ndarray, needed: np.ndarray) -> np.ndarray:
-    """beta from which kinetic friction alone holds all contacts, (n_r,); infinite without one."""
-    rest = np.maximum(needed - kinetic[:, 1], 0.0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.where(rest > 0.0, rest / kinetic[:, 0], 0.0)
-    return found.max(axis=1)
-
-
 def friction_scales(
     system: System, modal: ModalSystem, r: np.ndarray, kinetic: np.ndarray, rests: np.ndarray
 ) -> np.ndarray:
@@ -133,7 +125,7 @@ def find_intervals(
             return found
     problem, modal = problem_of(system, r)
     kinetic, static = lines
-    rests = rest_scales(kinetic, needed)
+    rests = rest_scales(general_of(system), needed).max(axis=1)
     sticks = np.isfinite(rests)
     scale = friction_scales(system, modal, r, kinetic, rests)
     starts, tallest, grows = linear_states(problem, r, wall_size(system, modal))

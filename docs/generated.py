@@ -1,5 +1,6 @@
 """Reference pages of the manual, generated from the program: commands, keys, variables of files, API."""
 
+import re
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -14,6 +15,8 @@ from frictionmap.files.keys import KEYS, TABLES, Key, describe_values
 from frictionmap.identify.rigs.configuration import KINDS
 from frictionmap.identify.rigs.keys import TABLES as RIG_TABLES
 from frictionmap.identify.rigs.keys import rig_keys
+
+HERE = Path(__file__).resolve().parent
 
 #: The public names, grouped by purpose; a name in none of these groups is added to the last one.
 _GROUPS: Mapping[str, tuple[str, ...]] = {
@@ -37,6 +40,7 @@ def write(folder: Path) -> None:
         "configuration.md": configuration(),
         "variables.md": variables(),
         "api.rst": api(),
+        "citation.bib": citation(),
     }
     for name, lines in pages.items():
         text = "\n".join(lines) + "\n"
@@ -49,6 +53,34 @@ def _table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> Iterator[str
     header = list(header)
     for cells in (header, ["---"] * len(header), *rows):
         yield f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
+
+
+# citation
+
+
+def _cited(text: str, key: str) -> str:
+    """First value of a key of CITATION.cff."""
+    found = re.search(rf"^ *(?:- )?{key}: *\"?(.*?)\"?$", text, re.MULTILINE)
+    assert found is not None, key
+    return found[1]
+
+
+def citation() -> Iterator[str]:
+    """Entries for BibTeX of the last release and of the thesis, from CITATION.cff."""
+    program, _, thesis = (HERE.parent / "CITATION.cff").read_text(encoding="utf-8").partition("references:")
+    yield "@software{frictionmap,"
+    yield f"  title   = {{{_cited(program, 'title')}}},"
+    yield f"  author  = {{{{{_cited(program, 'name')}}}}},"
+    yield f"  version = {{{_cited(program, 'version')}}},"
+    yield f"  year    = {{{_cited(program, 'date-released')[:4]}}}"
+    yield "}\n"
+    family = _cited(thesis, "family-names")
+    yield f"@phdthesis{{{family.lower()}{_cited(thesis, 'year')},"
+    yield f"  title  = {{{_cited(thesis, 'title').replace('Coulomb', '{Coulomb}')}}},"
+    yield f"  author = {{{family}, {_cited(thesis, 'given-names')}}},"
+    yield f"  school = {{{_cited(thesis, 'name')}}},"
+    yield f"  year   = {{{_cited(thesis, 'year')}}}"
+    yield "}"
 
 
 # commands

@@ -22,7 +22,7 @@ def manual(tmp_path_factory):
     pytest.importorskip("furo")
     folder = tmp_path_factory.mktemp("manual")
     copy = folder / "docs"  # pages are made beside the others
-    for name in ("docs", "configs", "benchmarks/results", "CHANGELOG.md"):
+    for name in ("docs", "configs", "benchmarks/results", "CHANGELOG.md", "CITATION.cff"):
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).symlink_to(ROOT / name) if name != "docs" else copy_of(ROOT / name, copy)
     done = subprocess.run(

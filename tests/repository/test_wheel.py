@@ -1,7 +1,6 @@
 """Source archive and wheel are built, hold what they should, and run where nothing else of this tree is."""
 
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -113,11 +112,3 @@ def test_the_wheel_runs_in_a_fresh_environment(built):
     run(program, "map", "map.toml", "--set", "grid.r.step=0.31", "--set", "grid.beta.num=7", cwd=folder)
     run(program, "plot", "map.nc", cwd=folder)
     assert (folder / "map.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_one_version_everywhere():
-    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
-    assert re.findall(r"^version: (.*)$", citation, re.MULTILINE) == [fm.__version__]
-    news = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
-    released = [name for name in re.findall(r"^## (\S+)", news, re.MULTILINE) if name != "Unreleased"]
-    assert released[0] == fm.__version__

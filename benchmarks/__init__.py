@@ -4,7 +4,7 @@ python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
 NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, design, static, bound,
 large, explore, first_minute, coupling, coverage or consistency: each is a module of that name in
-`measures`.  It prints tables, and writes JSON and a figure.
+`measures`.  It prints tables, and writes JSON and perhaps a figure.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
@@ -37,7 +37,6 @@ large, explore, first_minute, coupling, coverage or consistency: each is a modul
   body, peer, one_mass, chain  problem, interface, and common code of these solvers
   contacts, periodic_load,     the same for several contacts and loads of several harmonics
   switching
-  check                        comparison with a table of known steady states
 `references/`                  reference results without code of the package; the tests use them, too
   closed_forms                 boundaries and continuous motions in 40 digits, condition numbers
   steady_states                steady states of one mass in 40 digits

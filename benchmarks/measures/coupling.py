@@ -14,7 +14,6 @@ from scipy.linalg import eigh
 import frictionmap as fm
 
 from ..references.naive import chain_stiffness, naive_steady_state
-from ..report.figures import new_figure, save_figure
 from ..report.record import save
 
 #: Mean damping ratio of the modes; the quick form has the last one, whose motions settle soon.
@@ -83,22 +82,8 @@ def _in_words(summary: dict) -> str:
     )
 
 
-def _draw(found: dict, results: Path) -> None:
-    figure = new_figure(7.0, 4.0)
-    ax = figure.subplots()
-    for colour, (kind, levels) in zip(("tab:blue", "tab:orange", "tab:gray"), found.items(), strict=True):
-        for name, style in (("median", "o-"), ("nine of ten below", "o:")):
-            errors = [entry["error of Z"][name] for entry in levels.values()]
-            ax.loglog(
-                [float(level) for level in levels], errors, style, color=colour, label=f"{kind}: {name}"
-            )
-    ax.set(xlabel="mean damping ratio of the modes", ylabel="relative error of Z without the coupling")
-    ax.legend(fontsize=8)
-    save_figure(figure, results / "coupling.png")
-
-
 def run(quick: bool, results: Path) -> dict:
-    """Compare, print, draw and save."""
+    """Compare, print and save."""
     found: dict = {}
     for kind in KINDS:
         for level in LEVELS[-1:] if quick else LEVELS:
@@ -107,7 +92,6 @@ def run(quick: bool, results: Path) -> dict:
             summary = _summary([cell for cell in cells if cell is not None])
             found.setdefault(kind, {})[str(level)] = summary
             print(f"{kind}, mean zeta {level}: {_in_words(summary)}", flush=True)
-    _draw(found, results)
     content = {"neglected coupling": found}
     save("coupling", content, results)
     return content

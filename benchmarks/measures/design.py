@@ -15,11 +15,9 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from matplotlib.ticker import NullFormatter
 
 import frictionmap as fm
 
-from ..report.figures import new_figure, save_figure
 from ..report.record import pinned, save, spread, table, timed
 
 _ROUNDS = 3
@@ -185,15 +183,14 @@ _BORDERS = {
 }  # fmt: skip
 
 
-def borders(quick: bool) -> tuple[dict, dict[str, xr.Dataset]]:
-    """Borders of three systems against their maps, and the borders themselves."""
-    found, curves = {}, {}
+def borders(quick: bool) -> dict:
+    """Borders of three systems against their maps."""
+    found = {}
     for name, (system, wide, beta, narrow) in _BORDERS.items():
         r = narrow if quick else wide
         if r is None:
             continue
         taken, ds = timed(lambda s=system, x=r, y=beta: fm.borders(s, x, y))
-        curves[name] = ds
         right, points = _counts_beside(system, ds)
         on, changes = _changes_on_borders(system, ds, r, beta, _QUICK_MAP if quick else _MAP)
         found[name] = {
@@ -205,25 +202,7 @@ def borders(quick: bool) -> tuple[dict, dict[str, xr.Dataset]]:
             f"{on} of {changes} changes of a map on a border",
             flush=True,
         )
-    return found, curves
-
-
-def draw(curves: dict[str, xr.Dataset], path: Path) -> None:
-    """Draw the borders of all systems, by kind."""
-    colours = {"graze": "#2b4fa6", "slip-in-stop": "#bd7f50", "turn/stop": "#cc1f03"}
-    figure = new_figure(11.0, 4.2)
-    panels = figure.subplots(1, len(curves))
-    for ax, (name, ds) in zip(panels, curves.items(), strict=True):
-        for k, kind in enumerate(ds.border_kind.values.tolist()):
-            ax.semilogy(*_border(ds, k), color=colours[kind], linewidth=0.9)
-        ax.set_title(f"{name}: {ds.sizes['border']} borders", fontsize=10)
-        ax.set_xlabel("frequency ratio $r$")
-        ax.yaxis.set_minor_formatter(NullFormatter())
-    panels[0].set_ylabel("friction ratio $\\beta$")
-    for kind, colour in colours.items():
-        panels[-1].plot([], [], color=colour, label=kind)
-    panels[-1].legend(fontsize=8)
-    save_figure(figure, path)
+    return found
 
 
 def _border(ds: xr.Dataset, k: int) -> tuple[np.ndarray, np.ndarray]:
@@ -273,14 +252,12 @@ def _crosses(curve: tuple[np.ndarray, np.ndarray], r: float, low: float, high: f
 
 
 def run(quick: bool, results: Path) -> dict:
-    """Measure, print, save and draw."""
+    """Measure, print and save."""
     with pinned():
-        found, curves = borders(quick)
         content = {
             "questions": times(quick),
             "random systems": better_in_a_map(quick),
-            "borders": found,
+            "borders": borders(quick),
         }
     save("design", content, results)
-    draw(curves, results / "design.png")
     return content

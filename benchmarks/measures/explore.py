@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any
 
 from .. import ROOT
-from ..report.figures import mark_limit, name_time, new_figure, save_bars
 from ..report.record import save, spread, table
 from .browser import NoBrowser, chromium, skipped
 
@@ -208,28 +207,8 @@ def _scene(browser: Any, name: str, rounds: int, inputs: int) -> dict[str, list[
     return taken
 
 
-def draw(scenes: dict, path: Path) -> None:
-    """Draw one bar per measurement, with its limit."""
-    rows = [(scene, what, entry) for scene, found in scenes.items() for what, entry in found.items()]
-    figure = new_figure(8.0, 0.4 * len(rows) + 1.3)
-    axes = figure.subplots()
-    names = [f"{scene}: {what}" for scene, what, _ in rows]
-    axes.barh(names, [entry["median"] for *_, entry in rows], color="#2c5aa0")
-    for place, (scene, what, entry) in enumerate(rows):
-        axes.plot([entry["least"], entry["most"]], [place, place], color="black", linewidth=1.0)
-        name_time(axes, place, 1e-3 * entry["median"])
-        if (scene, what) in GOALS:
-            mark_limit(axes, place, GOALS[scene, what])
-    axes.set_xscale("log")
-    words = (
-        "time [ms]; line: least to most; orange: what it should take at most",
-        f"From an input to what answers it, {PIXELS} x {PIXELS} pixels",
-    )
-    save_bars(figure, axes, words, path)
-
-
 def run(quick: bool, results: Path) -> dict:
-    """Measure, print, save and draw."""
+    """Measure, print and save."""
     try:
         with chromium() as browser:
             version = browser.version
@@ -254,5 +233,4 @@ def run(quick: bool, results: Path) -> dict:
     table(("scene", "what", "ms", "least", "most", "at most", "runs"), rows)
     content = {"browser": version, "pixels": PIXELS, "milliseconds": scenes}
     save("explore", content, results)
-    draw(scenes, results / "explore.png")
     return content

@@ -21,7 +21,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from .. import ROOT
-from ..report.figures import mark_limit, name_time, new_figure, save_bars
 from ..report.record import save, spread, table, timed
 from .browser import NoBrowser, chromium, skipped
 
@@ -267,24 +266,8 @@ def _round(browser: Any, quick: bool) -> tuple[dict[str, float], list[dict]]:
     return taken | waits(noted), noted
 
 
-def draw(seconds: dict, path: Path) -> None:
-    """Draw one bar per step, with its limit."""
-    figure = new_figure(8.0, 0.4 * len(seconds) + 1.3)
-    axes = figure.subplots()
-    axes.barh(list(seconds), [entry["median"] for entry in seconds.values()], color="#2c5aa0")
-    for place, (name, entry) in enumerate(seconds.items()):
-        name_time(axes, place, entry["median"])
-        if name in GOALS:
-            mark_limit(axes, place, GOALS[name])
-    words = (
-        "time [s]; boundaries to motion: since the start of the server; orange: limit",
-        "The first minute: from a clone to a running motion",
-    )
-    save_bars(figure, axes, words, path)
-
-
 def run(quick: bool, results: Path) -> dict:
-    """Measure, print, save and draw."""
+    """Measure, print and save."""
     try:
         with chromium() as browser:
             version = browser.version
@@ -302,5 +285,4 @@ def run(quick: bool, results: Path) -> dict:
     table(("step", "seconds", "least", "most", "at most"), rows)
     content = {"browser": version, "configuration": CONFIG, "seconds": seconds, "screen": by_seconds(noted)}
     save("first_minute", content, results)
-    draw(seconds, results / "first_minute.png")
     return content

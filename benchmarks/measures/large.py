@@ -28,7 +28,6 @@ from frictionmap.stores.run import fill_store, in_this_process
 from frictionmap.stores.study import study_of
 
 from .. import ROOT
-from ..report.figures import new_figure, save_figure
 from ..report.record import save, spread, table
 
 LARGEST_R, LARGEST_BETA = 2.5, 4.0
@@ -76,26 +75,7 @@ def run(quick: bool, results: Path) -> dict:
         }
     content["ahead"] = ahead(content, quick)
     save("large", content, results)
-    draw(content["size"], results / "large.png")
     return content
-
-
-def draw(rows: list[dict], path: Path) -> None:
-    """Draw memory and time of complete commands over the number of cells."""
-    figure = new_figure(9.0, 3.6)
-    for axes, key, unit in zip(figure.subplots(1, 2), ("MB", "seconds"), ("MB", "s"), strict=True):
-        for kind, colour, marker in (("store", "#2c5aa0", "o"), ("file", "#d98032", "s")):
-            there = [row for row in rows if kind in row]
-            cells = [row["n"] ** 2 for row in there]
-            axes.semilogx(cells, [row[kind][key] for row in there], marker=marker, color=colour, label=kind)
-        axes.set_xticks([row["n"] ** 2 for row in rows], [f"{row['n']:,} x {row['n']:,}" for row in rows])
-        axes.minorticks_off()
-        axes.set_ylim(bottom=0.0)
-        axes.set_xlabel("cells of T Fig. 3.12, mu = 1")
-        axes.set_ylabel(f"{'largest memory' if key == 'MB' else 'time of the command'} [{unit}]")
-        axes.grid(alpha=0.25)
-        axes.legend()
-    save_figure(figure, path)
 
 
 def _command(folder: Path, *arguments: object) -> list[str]:

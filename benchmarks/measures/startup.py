@@ -15,7 +15,6 @@ from pathlib import Path
 import xarray as xr
 
 from .. import ROOT
-from ..report.figures import name_time, new_figure, save_bars
 from ..report.record import pinned, save, spread, table, timed
 
 ONE_MASS, STRUCTURE = (ROOT / "configs" / name for name in ("fig-3-12.toml", "fig-7-7-zeta-0.1.toml"))
@@ -73,24 +72,8 @@ def _round(structure: bool, quick: bool) -> dict[str, float]:
     return taken
 
 
-def draw(seconds: dict, path: Path) -> None:
-    """Draw one bar per process."""
-    figure = new_figure(8.0, 0.45 * len(seconds) + 1.3)
-    axes = figure.subplots()
-    names = list(seconds)
-    medians = [entry["median"] for entry in seconds.values()]
-    colours = ["#d98032" if "first run" in name else "#2c5aa0" for name in names]
-    axes.barh(names, medians, color=colours)
-    for place, entry in enumerate(seconds.values()):
-        axes.plot([entry["least"], entry["most"]], [place, place], color="black", linewidth=1.0)
-        name_time(axes, place, entry["median"])
-    axes.set_xscale("log")
-    words = "time of a fresh process [s]; line: least to most", "Only the first run compiles (orange)"
-    save_bars(figure, axes, words, path)
-
-
 def run(quick: bool, results: Path) -> dict:
-    """Measure, print, save and draw."""
+    """Measure, print and save."""
     with pinned():  # the processes started inherit it
         rounds = [_round(k < STRUCTURE_ROUNDS[quick], quick) for k in range(ROUNDS[quick])]
     seconds = {name: spread([one[name] for one in rounds if name in one]) for name in rounds[0]}
@@ -106,5 +89,4 @@ def run(quick: bool, results: Path) -> dict:
         content["skipped"] = "empty caches and runs of a structure: compiling takes longer than a quick look"
         print(f"skipped, {content['skipped']}")
     save("startup", content, results)
-    draw(seconds, results / "startup.png")
     return content

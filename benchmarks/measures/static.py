@@ -16,7 +16,6 @@ from pathlib import Path
 import numpy as np
 
 from .. import ROOT
-from ..report.figures import new_figure, save_figure
 from ..report.record import save, spread, table
 
 #: Computes one scene and prints seconds; keeps what its cells are.
@@ -114,25 +113,8 @@ def _measure(scene: dict, packages: dict[str, Path], rounds: int, folder: Path) 
     return result
 
 
-def _draw(scenes: dict[str, dict], path: Path) -> None:
-    figure = new_figure(7.0, 3.2)
-    axes = figure.subplots()
-    place = np.arange(len(scenes))
-    names = list(next(iter(scenes.values()))["seconds"])
-    for k, name in enumerate(names):
-        medians = [entry["seconds"][name]["median"] for entry in scenes.values()]
-        axes.barh(place + 0.4 * k, medians, height=0.38, label=f"{name} checkout")
-    axes.set_yticks(place + 0.2 * (len(names) - 1), list(scenes))
-    axes.invert_yaxis()
-    axes.set_xscale("log")
-    axes.set_xlabel("time of the map, one thread [s]")
-    axes.grid(axis="x", alpha=0.25)
-    axes.legend()
-    save_figure(figure, path)
-
-
 def run(quick: bool, results: Path, package: Path | None = None) -> dict:
-    """Measure, print, save and draw."""
+    """Measure, print and save."""
     packages = {"this": ROOT} | ({"other": package.resolve()} if package else {})
     scenes = {}
     with tempfile.TemporaryDirectory(prefix="static-") as folder:
@@ -149,5 +131,4 @@ def run(quick: bool, results: Path, package: Path | None = None) -> dict:
     table(("scene", "cells", "s", "times as fast as the other"), rows)
     content = {"scenes": scenes, "compared with another checkout": package is not None}
     save("static", content, results)
-    _draw(scenes, results / "static.png")
     return content

@@ -1,11 +1,12 @@
 """Steady states: solved against marched, uniqueness for mu = 1, unresolved cells without damping.
 
 Marching continues until the motion repeats, to 1e-12 per recurrence. It does not use Newton's method,
-neighbouring cells or closed forms (`skip = "none"`). Its results are compared cell by cell, and every
-difference is listed with its cause.
+neighbouring cells or closed forms (`skip = "none"`). Its results are compared cell by cell, and the
+differences are counted by cause.
 """
 
 import math
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,6 @@ import frictionmap as fm
 from frictionmap import regimes
 
 from .. import ROOT
-from ..report.figures import new_figure, save_figure
 from ..report.record import save, table
 
 CONFIGS = ROOT / "configs"
@@ -32,13 +32,8 @@ SMALL_Z = 1e-3
 #: A cell this close to a boundary is on it, to rounding.
 ON_BOUNDARY = 1e-14
 
-DAMPED = {
-    "2 masses, contact 2, load 1, 2 %": (2, 2, 1, 0.02),
-    "3 masses, contact 1, load 3, 1 %": (3, 1, 3, 0.01),
-    "5 masses, contact 3, load 1, 1 %": (5, 3, 1, 0.01),
-    "5 masses, contact 5, load 5, 5 %": (5, 5, 5, 0.05),
-    "4 masses, contact 2, load 4, 0.3 %": (4, 2, 4, 0.003),
-}
+#: Chains: masses, contact, load, damping ratio.
+DAMPED = ((2, 2, 1, 0.02), (3, 1, 3, 0.01), (5, 3, 1, 0.01), (5, 5, 5, 0.05), (4, 2, 4, 0.003))
 
 
 def _chain(masses: int, contact: int, load: int, zeta: float) -> fm.System:
@@ -52,22 +47,23 @@ def _status(value: int) -> str:
     return next(code.name for code in regimes.STATUSES if code.value == value)
 
 
-def _cause(cell: dict, other: dict, lim: float, stick: float) -> str:
-    """Cause of the difference between two results of one cell."""
-    beta = cell["beta"]
-    if (
-        min(abs(beta / lim - 1.0) if lim else math.inf, abs(beta / stick - 1.0) if stick else math.inf)
-        < ON_BOUNDARY
-    ):
+def _cause(beta: float, ends: list[float], statuses: list[int]) -> str:
+    """Cause of the difference between the solved and the marched result of one cell."""
+    if min(abs(beta / end - 1.0) if end else math.inf for end in ends) < ON_BOUNDARY:
         return "beta on a boundary to rounding"
-    for name, which in (("solved", cell), ("marched", other)):
-        if which["status"]:
-            return f"{name}: {_status(which['status'])}"
+    for name, status in zip(("solved", "marched"), statuses, strict=True):
+        if status:
+            return f"{name}: {_status(status)}"
     return "unexplained"
 
 
-def compare(solved: xr.Dataset, marched: xr.Dataset) -> tuple[int, list[dict], np.ndarray]:
-    """Cells that both resolve, the different ones with their cause, and relative differences of Z."""
+def compare(
+    solved: xr.Dataset, marched: xr.Dataset, statuses: bool = True
+) -> tuple[int, list[str], np.ndarray]:
+    """Cells that both resolve, the causes of different ones, and relative differences of Z.
+
+    statuses : whether another status is a difference
+    """
     regime = (solved.regime != marched.regime).values
     stops = (solved.stops_per_cycle != marched.stops_per_cycle).values & (
         solved.regime == regimes.STICK_SLIP
@@ -78,30 +74,24 @@ def compare(solved: xr.Dataset, marched: xr.Dataset) -> tuple[int, list[dict], n
     status = (solved.status != marched.status).values
     both = ((solved.status == 0) & (marched.status == 0)).values
     moves = both & (solved.regime > 0).values & np.isfinite(z[1])
-    different = (both & (regime | stops)) | (moves & (off > CLOSE)) | status
+    different = (both & (regime | stops)) | (moves & (off > CLOSE)) | (status & statuses)
     found = []
     for m, i, j in np.argwhere(different):
-        pair = [{name: ds[name].values[m, i, j].item() for name in OUTPUTS} for ds in (solved, marched)]
-        cell = {name: solved[name].values[k].item() for name, k in (("r", i), ("beta", j), ("mu", m))}
-        lim, stick = solved.beta_lim.values[m, i], solved.beta_stick.values[m, i]
-        cause = _cause(cell | pair[0], pair[1], lim, stick)
-        found.append(cell | {"solved": pair[0], "marched": pair[1], "cause": cause})
+        both_statuses = [int(ds["status"].values[m, i, j]) for ds in (solved, marched)]
+        ends = [float(solved[name].values[m, i]) for name in ("beta_lim", "beta_stick")]
+        found.append(_cause(float(solved["beta"].values[j]), ends, both_statuses))
     return int(both.sum()), found, off[moves]
 
 
-def _summary(cells: int, both: int, found: list[dict], off: list[np.ndarray]) -> dict:
-    causes: dict[str, int] = {}
-    for row in found:
-        causes[row["cause"]] = causes.get(row["cause"], 0) + 1
+def _summary(cells: int, both: int, causes: list[str], off: list[np.ndarray]) -> dict:
     largest = np.concatenate(off)
     largest = largest[np.isfinite(largest)]  # an infinite one is among the differences
     return {
         "cells": cells,
         "both resolved": both,
-        "differences by cause": causes,
+        "differences by cause": dict(Counter(causes)),
         "largest difference of Z": float(largest.max(initial=0.0)),
         "median difference of Z": float(np.median(largest)) if largest.size else 0.0,
-        "differences": found,
     }
 
 
@@ -119,8 +109,9 @@ def published_map(quick: bool) -> dict:
 def random_cells(quick: bool) -> dict:
     """Random cells of damped chains, mu from 1 to 2, from rest and moving."""
     rng = np.random.default_rng(2000)
-    every, found, off, both = 10 if quick else 400, [], [], 0
-    for name, arguments in DAMPED.items():
+    every, off, both = 10 if quick else 400, [], 0
+    found: list[str] = []
+    for arguments in DAMPED:
         system = _chain(*arguments)
         for _ in range(every):
             r, mu = [float(rng.uniform(0.05, 3.0))], [float(rng.choice([1.0, 1.2, 1.5, 2.0]))]
@@ -132,9 +123,9 @@ def random_cells(quick: bool) -> dict:
                 fm.sweep(*grid, outputs=OUTPUTS, start=start, threads=1, **settings)
                 for settings in ({}, {"skip": "none", "steady": "marched", "cycles": CYCLES})
             ]
-            resolved, rows, difference = compare(*pair)
+            resolved, causes, difference = compare(*pair)
             both += resolved
-            found += [{"system": name, "start": start} | row for row in rows]
+            found += causes
             off.append(difference)
     return _summary(every * len(DAMPED), both, found, off)
 
@@ -158,7 +149,7 @@ def one_answer(quick: bool) -> dict:
     rng = np.random.default_rng(10000)
     wanted = 250 if quick else 10000
     cells = resolved = 0
-    found: list[dict] = []
+    found: list[str] = []
     off = []
     while resolved < wanted:
         system = random_system(rng, float(rng.choice([0.0, 0.005, 0.03, 0.3, 1.5])))
@@ -174,12 +165,8 @@ def one_answer(quick: bool) -> dict:
         cells += decided.size
         resolved += int(decided.sum())
         for other in marched:
-            _, rows, difference = compare(plain, other)
-            found += [
-                {"system": str(system)} | row
-                for row in rows
-                if row["solved"]["status"] == row["marched"]["status"] == 0
-            ]
+            _, causes, difference = compare(plain, other, statuses=False)
+            found += causes
             off.append(difference)
     return {"resolved by all three": resolved} | _summary(cells, resolved, found, off)
 
@@ -193,7 +180,7 @@ def headings(quick: bool) -> dict:
     rng = np.random.default_rng(100000)
     maps, every = (1, 4) if quick else (25, 1)
     cells = both = 0
-    found: list[dict] = []
+    found: list[str] = []
     off = []
     for _ in range(maps):
         contact = str(rng.choice(["fixed-wall", "joined-base-wall"]))
@@ -205,10 +192,10 @@ def headings(quick: bool) -> dict:
         for start in ("rest", "moving"):
             solved = fm.sweep(*grid, outputs=OUTPUTS, start=start)
             marched = fm.sweep(*grid, outputs=OUTPUTS, start=start, steady="marched", cycles=CYCLES)
-            resolved, rows, difference = compare(solved, marched)
+            resolved, causes, difference = compare(solved, marched)
             cells += solved.regime.size
             both += resolved
-            found += [{"contact": contact, "zeta": zeta, "start": start} | row for row in rows]
+            found += causes
             off.append(difference)
     return _summary(cells, both, found, off)
 
@@ -230,31 +217,8 @@ def undamped(quick: bool) -> dict:
     return content
 
 
-def draw(off: dict[str, float], content: dict, path: Path) -> None:
-    """Draw the statuses of the undamped maps as shares of their cells."""
-    names = [code.name for code in regimes.STATUSES if any(code.name in row for row in content.values())][1:]
-    figure = new_figure(7.4, 3.6)
-    ax = figure.subplots()
-    left = np.zeros(len(content))
-    totals = np.array([sum(row.values()) for row in content.values()])
-    for name, colour in zip(names, ("#d7301f", "#fbe45b", "#b04fa3", "#2c5aa0", "#7cc5b0"), strict=False):
-        share = 100.0 * np.array([row.get(name, 0) for row in content.values()]) / totals
-        ax.barh(list(content), share, left=left, color=colour, label=name.replace("_", " "))
-        left += share
-    ax.invert_yaxis()
-    ax.set_xlabel("cells [%]")
-    worst = max(off.values())
-    ax.set_title(
-        "Undamped structures: cells without a periodic answer\n"
-        f"(elsewhere marching agrees with the solved answer: largest difference of Z {worst:.0e})",
-        fontsize=10,
-    )
-    ax.legend(fontsize=8, loc="lower right")
-    save_figure(figure, path)
-
-
 def run(quick: bool, results: Path) -> dict:
-    """Compare, print, save and draw."""
+    """Compare, print and save."""
     content = {
         "T Fig. 3.12": published_map(quick),
         "five damped chains": random_cells(quick),
@@ -272,12 +236,10 @@ def run(quick: bool, results: Path) -> dict:
             for name, row in content.items()
         ],
     )
-    off = {name: row["largest difference of Z"] for name, row in content.items()}
     unresolved = undamped(quick)
     print()
     for name, row in unresolved.items():
         print(f"{name}: " + ", ".join(f"{count} {status}" for status, count in row.items()))
     content["undamped maps"] = unresolved
     save("steady", content, results)
-    draw(off, unresolved, results / "steady.png")
     return content

@@ -3,13 +3,13 @@
 import json
 
 import pytest
-from measuring import check_quoted, check_result, python
+from measuring import WITHOUT_FIGURE, check_quoted, check_result, python
 
 from benchmarks.__main__ import BENCHMARKS
 from benchmarks.report import results_page
 
-#: Benchmarks whose figure has another name.
-FIGURES = {"bound": "fig-5-55"}
+#: Benchmarks whose figure has another name, or that have none.
+FIGURES = {"bound": "fig-5-55"} | dict.fromkeys(WITHOUT_FIGURE)
 
 #: In one process, so that each kernel is compiled once.
 NAMES = BENCHMARKS

@@ -13,6 +13,7 @@ from .checks import nearest
 from .datasets.labels import BOUNDARIES, HISTORY_VARIABLES, SHARES
 from .errors import InputError
 from .files.reading import kind
+from .model.settings import CURVE_OUTPUTS
 from .pictures.curves.figure import CURVE_VARIABLES, plot_curves
 from .pictures.curves.harmonics import HARMONIC_VARIABLES
 from .pictures.designs.figure import plot_design
@@ -71,7 +72,7 @@ PICTURED = {
             *(*_BORDERS, *BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES),
         )
     ),
-    "boundaries": frozenset((*_BORDERS, *BOUNDARIES, *_GENERAL_BOUNDARIES, *_FEATURES)),
+    "boundaries": frozenset((*_BORDERS, *BOUNDARIES, *CURVE_OUTPUTS, *_GENERAL_BOUNDARIES, *_FEATURES)),
     "response": frozenset(
         (
             *("regime", "contact_regime", "stops_per_cycle", "slips_per_cycle", "period", "status"),

@@ -30,7 +30,7 @@ CURVE = ("mu", "r")
 LIMIT = (*CURVE, "dof")
 
 #: Boundaries of the regimes over r, which every map has.
-BOUNDARIES = ("beta_lim", "beta_lim_modal", "beta_stick")
+BOUNDARIES = ("beta_lim", "beta_stick")
 
 
 #: Kinds of borders between numbers of stops, see `stop_counts.orbits`.

@@ -8,7 +8,8 @@ from .. import checks
 from ..errors import InputError
 from .html import as_table
 
-#: Outputs of a map, in the order of the file; described in `labels.CELL_VARIABLES`.
+#: Outputs of a map, in the order of the file; described in `labels.CELL_VARIABLES`, `CURVE_OUTPUTS` in
+#: `labels.CURVES`.
 Output = Literal[
     "regime",
     "stops_per_cycle",
@@ -34,8 +35,12 @@ Output = Literal[
     "equivalent_damping",
     "contact_first_harmonic_amplitude",
     "contact_first_harmonic_phase",
+    "beta_lim_modal",
 ]
 OUTPUTS: tuple[str, ...] = get_args(Output)
+
+#: Outputs that have one value per frequency, not one per cell.
+CURVE_OUTPUTS = ("beta_lim_modal",)
 
 #: Further outputs of systems with several contacts, springs in contacts, belts or periodic loads.
 GeneralOutput = Literal[
@@ -135,6 +140,12 @@ class Solver:
                 f"outputs must name at least one of {', '.join((*OUTPUTS, *GENERAL_OUTPUTS))}; got none"
             )
         object.__setattr__(self, "outputs", tuple(dict.fromkeys(self.outputs)))
+
+    @property
+    def of_cells(self) -> "Solver":
+        """The settings with outputs of cells only, `status` if there are no others."""
+        outputs = tuple(name for name in self.outputs if name not in CURVE_OUTPUTS)
+        return self if outputs == self.outputs else replace(self, outputs=outputs or ("status",))
 
     def _repr_html_(self) -> str:
         rows = {field.name: getattr(self, field.name) for field in fields(self)}

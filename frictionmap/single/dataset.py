@@ -26,7 +26,9 @@ def single_map(
             f"cannot compute {only[0]} for one rigid contact under one harmonic load: it needs contacts, "
             f"load_harmonics, wall_velocity, normal_load or contact_stiffness; omit it"
         )
-    found, curves = solve_map(system, axes, solver, threads, progress, watch)
+    found, curves = solve_map(system, axes, solver.of_cells, threads, progress, watch)
     variables = {name: label_variable(name, values) for name, values in found.items()}
     sizes = {"dof": np.array(system.dofs.numbers)} if "amplitude" in solver.outputs else {}
-    return xr.Dataset(variables | boundary_variables(curves), coords=indexed({**axes, **sizes}))
+    return xr.Dataset(
+        variables | boundary_variables(curves, solver.outputs), coords=indexed({**axes, **sizes})
+    )

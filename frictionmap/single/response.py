@@ -29,7 +29,7 @@ def single_response(
     system: System, r: float, beta: float, mu: float, solver: Solver, points: int
 ) -> xr.Dataset:
     """The steady state of a cell in time; see `steady.response`."""
-    request = MotionRequest(system, r, beta, mu, solver, points)
+    request = MotionRequest(system, r, beta, mu, solver.of_cells, points)
     found = find_motion(request)
     history, cycle = found.history, found.cycle
     times, begins, places = history.events
@@ -53,7 +53,7 @@ def single_response(
         "part": PARTS,
     }
     labelled = {name: label_variable(name, values) for name, values in variables.items()}
-    labelled |= {name: v[0, 0] for name, v in boundary_variables(found.curves).items()}
+    labelled |= {name: v[0, 0] for name, v in boundary_variables(found.curves, solver.outputs).items()}
     labelled |= {
         name: label_variable(name, CELL_VARIABLES[name].dtype(value)) for name, value in found.summary.items()
     }

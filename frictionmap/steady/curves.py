@@ -81,7 +81,7 @@ def curves(
         * `rms`: root mean square.  `distortion`: root mean square without mean and first harmonic, over that
           of the first harmonic.
 
-        On (mu, r): `beta_lim`, `beta_lim_modal`, `beta_stick`; on (mu, r, dof) `limit_amplitude`,
+        On (mu, r): `beta_lim`, `beta_stick`; on (mu, r, dof) `limit_amplitude`,
         `limit_phase`, `limit_first_harmonic_amplitude` and `limit_first_harmonic_phase` of the continuous
         motion at beta_lim; on (r, dof) `held_response` and `held_phase` with the contact held.
 

@@ -68,7 +68,7 @@ def sweep(
     xarray.Dataset
         On (mu, r, beta): the requested outputs, and `status` if any cell is unresolved or averaged; with
         several contacts, springs, belts or loads of several harmonics always.  On (mu, r): `beta_lim`,
-        `beta_lim_modal`, `beta_stick`.  Unresolved cells have regime -1; `status` gives the reason.
+        `beta_stick`.  Unresolved cells have regime -1; `status` gives the reason.
 
         With units also `frequency(r)` [Hz], `friction_force(beta)` [N], and every quantity in m, N or J in
         addition to its ratio, such as `contact_amplitude_m` and `beta_lim_N`.  For a reduced structure the

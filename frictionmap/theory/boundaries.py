@@ -2,6 +2,8 @@
 dataset.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 
@@ -17,6 +19,7 @@ from ..features import (
     peak_thresholds,
 )
 from ..model.modes import wrapped
+from ..model.settings import CURVE_OUTPUTS
 from ..model.system import System
 from .boundary_curves import Curves, find_curves
 
@@ -32,9 +35,10 @@ _REACH = 1e-6
 _ON_END = 1e-13
 
 
-def boundary_variables(found: Curves) -> dict[str, xr.Variable]:
-    """Label beta_lim, beta_lim_modal and beta_stick, dims (mu, r)."""
-    return {name: label_variable(name, getattr(found, name)) for name in BOUNDARIES}
+def boundary_variables(found: Curves, asked: Sequence[str] = ()) -> dict[str, xr.Variable]:
+    """Label beta_lim and beta_stick, and beta_lim_modal if asked for, dims (mu, r)."""
+    names = [name for name in ("beta_lim", *CURVE_OUTPUTS, "beta_stick") if name in (*BOUNDARIES, *asked)]
+    return {name: label_variable(name, getattr(found, name)) for name in names}
 
 
 def _padded(rows: list[np.ndarray]) -> np.ndarray:
@@ -115,7 +119,7 @@ def one_contact_boundaries(system: System, r: np.ndarray, mu: np.ndarray) -> xr.
         "H": found.h,
         "S": found.s,
     }
-    variables = boundary_variables(found)
+    variables = boundary_variables(found, CURVE_OUTPUTS)
     variables |= {name: label_variable(name, v) for name, v in functions.items()}
     variables |= _feature_variables(system, r, mu)
     axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}

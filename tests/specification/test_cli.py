@@ -482,7 +482,7 @@ def test_info(folder, capsys):
     assert re.search(r"^  r +0\.3, 0\.8$", out, re.MULTILINE)
     assert "6 cells (2 permanent sticking, 2 stick slip, 2 continuous)" in lines
     errors = [name for name in OUTPUTS if name.endswith("_error")]
-    for name in {*OUTPUTS, "beta_lim", "beta_lim_modal", "beta_stick"} - {*errors}:
+    for name in {*OUTPUTS, "beta_lim", "beta_stick"} - {*errors}:
         assert re.search(rf"^  {name} +\(mu, r", out, re.MULTILINE)
     assert f"standard errors       {', '.join(errors)}" in " ".join(out.split("\n                       "))
     assert len(lines) <= 42

@@ -12,7 +12,7 @@ TWO = fm.System("between-masses", [1, 2], mass_ratios=[1.0, 0.5], stiffness_rati
 CELL, MASS, LIMIT = ("mu", "r", "beta"), ("mu", "r", "beta", "dof"), ("mu", "r", "dof")
 ALWAYS = {
     **dict.fromkeys(("regime", "stops_per_cycle", "period", "status"), CELL),
-    **dict.fromkeys(("beta_lim", "beta_lim_modal", "beta_stick"), ("mu", "r")),
+    **dict.fromkeys(("beta_lim", "beta_stick"), ("mu", "r")),
     **dict.fromkeys(("held_response", "held_phase"), ("r", "dof")),
     **dict.fromkeys(("limit_amplitude", "limit_phase"), LIMIT),
     **dict.fromkeys(("limit_first_harmonic_amplitude", "limit_first_harmonic_phase"), LIMIT),

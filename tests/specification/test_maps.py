@@ -149,8 +149,24 @@ def test_a_cell_on_beta_stick_does_not_depend_on_its_grid():
 @pytest.mark.parametrize("name", OUTPUTS)
 def test_only_what_is_asked_for_is_there(name):
     ds = fm.sweep(fm.System(), [0.8, 1.5], [0.2, 0.8], [1.0, 1.5], outputs=[name])
-    assert set(ds.data_vars) == {name, "beta_lim", "beta_lim_modal", "beta_stick"}
+    assert set(ds.data_vars) == {name, "beta_lim", "beta_stick"}
     assert ds[name].dims == ("mu", "r", "beta")
+
+
+@pytest.mark.parametrize("outputs", [["beta_lim_modal"], ["regime", "beta_lim_modal"]])
+def test_the_modal_bound_is_part_of_maps_on_request(outputs):
+    """In a map and in a cell it is that of `boundaries`, to the bit; no cell variable is added for it."""
+    system = fm.System(contact_masses=[2], mass_ratios=[1.0, 1.0], stiffness_ratios=[1.0, 1.0])
+    axes = [0.4, 0.7], [0.05, 0.3], [1.0, 1.4]
+    ds = fm.sweep(system, *axes, outputs=outputs)
+    assert set(ds.data_vars) == {*outputs, "beta_lim", "beta_stick"}
+    expected = fm.boundaries(system, axes[0], axes[2])["beta_lim_modal"]
+    np.testing.assert_array_equal(ds["beta_lim_modal"].values, expected.values)
+    assert (ds["beta_lim_modal"] < ds["beta_lim"]).any()
+    cell = fm.response(system, 0.7, 0.05, outputs=outputs)
+    assert float(cell["beta_lim_modal"]) == float(expected.sel(mu=1.0, r=0.7))
+    assert "beta_lim_modal" not in fm.response(system, 0.7, 0.05)
+    assert "beta_lim_modal" not in fm.curves(system, *axes[:2])
 
 
 @pytest.mark.parametrize("name", OUTPUTS)

@@ -42,7 +42,7 @@ CELL_VARIABLES = {
     "status": "int8",
 }
 MAP = {name: (dtype, CELL) for name, dtype in CELL_VARIABLES.items()} | {
-    name: ("float64", CURVE) for name in ("beta_lim", "beta_lim_modal", "beta_stick")
+    name: ("float64", CURVE) for name in ("beta_lim", "beta_stick")
 }
 BOUNDARIES = {name: ("float64", CURVE) for name in ("beta_lim", "beta_lim_modal", "beta_stick")} | {
     name: ("float64", ("r",)) for name in ("V", "U")
@@ -155,7 +155,7 @@ def test_only_what_was_asked_for_is_stored(files, tmp_path):
     arguments = ["map", str(files / "tiny.toml"), "-o", str(tmp_path / "out.nc"), "--quiet"]
     assert main([*arguments, "--set", 'solver.outputs=["period"]', "--set", "grid.r=[0.3, 2.0]"]) == 0
     with xr.open_dataset(tmp_path / "out.nc") as ds:
-        assert set(ds.data_vars) == {"period", "beta_lim", "beta_lim_modal", "beta_stick"}
+        assert set(ds.data_vars) == {"period", "beta_lim", "beta_stick"}
 
 
 def test_global_attributes(opened, kind, files):

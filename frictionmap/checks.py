@@ -37,7 +37,7 @@ def threads(given: int | None = None) -> int:
     if not text:
         return processors
     if not text.isdecimal() or int(text) < 1:
-        raise InputError(f"NUMBA_NUM_THREADS must be a whole number >= 1; got {text!r}")
+        raise InputError("NUMBA_NUM_THREADS", f"must be a whole number >= 1; got {text!r}")
     return min(processors, int(text))
 
 
@@ -51,7 +51,7 @@ def one_line(value: object) -> str:
 def instance(value: object, name: str, kind: type[T]) -> T:
     """Check that `value` is an instance of a class of the package."""
     if not isinstance(value, kind):
-        raise InputError(f"{name} must be a frictionmap.{kind.__name__}; got {one_line(value)}")
+        raise InputError(name, f"must be a frictionmap.{kind.__name__}; got {one_line(value)}")
     return value
 
 
@@ -59,14 +59,14 @@ def choice(value: object, name: str, valid: tuple[str, ...]) -> str:
     """Check that `value` is one of the valid words."""
     if not isinstance(value, str) or value not in valid:
         hint = nearest(value, valid) if isinstance(value, str) else ""
-        raise InputError(f"{name} must be one of {', '.join(valid)}; got {one_line(value)}{hint}")
+        raise InputError(name, f"must be one of {', '.join(valid)}; got {one_line(value)}{hint}")
     return value
 
 
 def unmasked(values: object, name: str) -> None:
     """Refuse an array with masked values, whose hidden numbers are meaningless."""
     if np.ma.is_masked(values):
-        raise InputError(f"{name} must have no masked values; got {one_line(values)}")
+        raise InputError(name, f"must have no masked values; got {one_line(values)}")
 
 
 def is_array(value: object) -> bool:
@@ -109,16 +109,16 @@ def number(
     """Convert to float; refuse unless finite, least <= value <= most and value > above."""
     value = _single(value, name)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
-        raise InputError(f"{name} must be a number; got {one_line(value)}")
+        raise InputError(name, f"must be a number; got {one_line(value)}")
     result = _as_float(value) + 0.0  # not -0.0
     if not math.isfinite(result):
-        raise InputError(f"{name} must be finite; got {result}")
+        raise InputError(name, f"must be finite; got {result}")
     if result <= above:
-        raise InputError(f"{name} must be > {above:g}; got {value}")
+        raise InputError(name, f"must be > {above:g}; got {value}")
     if result < least:
-        raise InputError(f"{name} must be >= {least:g}; got {value}")
+        raise InputError(name, f"must be >= {least:g}; got {value}")
     if result > most:
-        raise InputError(f"{name} must be <= {most:g}; got {value}")
+        raise InputError(name, f"must be <= {most:g}; got {value}")
     return result
 
 
@@ -126,7 +126,7 @@ def whole(value: object, name: str, *, least: int, most: int | None = None) -> i
     """Convert to int; refuse unless a whole number in range."""
     value = _single(value, name)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
-        raise InputError(f"{name} must be a whole number; got {one_line(value)}")
+        raise InputError(name, f"must be a whole number; got {one_line(value)}")
     number(int(value), name, least=least, most=math.inf if most is None else most)
     return int(value)
 
@@ -135,12 +135,12 @@ def axis(values: object, name: str, *, least: float, most: float = math.inf) -> 
     """Convert to a 1-D float64 array; refuse unless non-empty, finite, increasing and in range."""
     given = np.atleast_1d(array(values, name))
     if given.dtype.kind not in "iuf":  # neither text, nor complex, nor true and false
-        raise InputError(f"{name} must be numbers; got {one_line(values)}")
+        raise InputError(name, f"must be numbers; got {one_line(values)}")
     result = given.astype(np.float64) + 0.0  # not -0.0
     if result.ndim != 1:
-        raise InputError(f"{name} must be one-dimensional; got {result.ndim} dimensions")
+        raise InputError(name, f"must be one-dimensional; got {result.ndim} dimensions")
     if result.size == 0:
-        raise InputError(f"{name} must have at least one value; got none")
+        raise InputError(name, "must have at least one value; got none")
 
     first, last = float(result[0]), float(result[-1])  # of a good axis they bound all others
     increasing = bool((result[1:] > result[:-1]).all())
@@ -155,7 +155,7 @@ def _refuse_axis(values: np.ndarray, name: str, least: float, most: float) -> No
     def refuse(wrong: np.ndarray, valid: str) -> None:
         if wrong.any():
             index = int(np.argmax(wrong))
-            raise InputError(f"{name} must be {valid}; got {values[index]} at index {index}")
+            raise InputError(name, f"must be {valid}; got {values[index]} at index {index}")
 
     refuse(~np.isfinite(values), "finite")
     refuse(values < least, f">= {least:g}")
@@ -169,6 +169,7 @@ def cells(n_mu: int, n_r: int, n_beta: int, name: str = "grid", points: int = 1)
     if total > MOST_CELLS:
         further = f" x {points} points" if points > 1 else ""
         raise InputError(
-            f"{name} must have at most {MOST_CELLS:.0e} cells in memory; got {total:.3g} "
-            f"({n_mu} mu x {n_r} r x {n_beta} beta{further})"
+            name,
+            f"must have at most {MOST_CELLS:.0e} cells in memory; got {total:.3g} "
+            f"({n_mu} mu x {n_r} r x {n_beta} beta{further})",
         )

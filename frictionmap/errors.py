@@ -1,10 +1,35 @@
 """The exceptions of the package, and hints for their messages."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 
 class InputError(ValueError):
-    """Invalid input; the message names the argument or key, its value and the valid range."""
+    """Invalid input; the message names the argument or key, its value and the valid range.
+
+    InputError(message), or InputError(where, problem), or InputError(lead, where, problem): `where` is the
+    argument or key that the message is about, and `lead` the words before it.  Callers that know it by
+    another name rename it: `InputError("mu", "must be >= 1; got 0").renamed("grid.mu")`.
+    """
+
+    def __init__(self, *parts: str) -> None:
+        lead, where, self.problem = ("", "", *parts)[-3:]
+        self.lead, self.where = lead, where
+        before = " ".join(filter(None, (lead, where)))
+        super().__init__(f"{before}{'' if not before or self.problem[0] == ':' else ' '}{self.problem}")
+
+    def renamed(self, where: str) -> "InputError":
+        """The same error, about an argument or key of another name."""
+        return InputError(self.lead, where, self.problem)
+
+
+@contextmanager
+def naming(place: object) -> Iterator[None]:
+    """Put a place, such as the name of a file, before the messages of errors."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{place}: {error}") from None
 
 
 class NoSteadyState(RuntimeError):

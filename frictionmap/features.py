@@ -188,7 +188,7 @@ def _undamped(system: System) -> ModalModel:
     """The structure without its damping and with a real load."""
     if not one_phase(system):
         raise InputError(
-            f"load must have one phase for invariant points of a mass; got {system.modes.load.tolist()}"
+            "load", f"must have one phase for invariant points of a mass; got {system.modes.load.tolist()}"
         )
     modes = system.modes
     turned = _real_load(modes)

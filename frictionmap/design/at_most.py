@@ -25,8 +25,9 @@ def find_ranges(task: Task, curve: PerformanceCurve, limit: float) -> tuple[Opti
     optimum = find_optimum(task, curve)
     if limit < optimum.best.size:
         raise InputError(
-            f"limit must be >= {optimum.best.size:.9g}, the least peak, at beta = {optimum.best.beta:.6g}; "
-            f"got {limit:g}"
+            "limit",
+            f"must be >= {optimum.best.size:.9g}, the least peak, at beta = {optimum.best.beta:.6g}; "
+            f"got {limit:g}",
         )
     points = optimum.points
 

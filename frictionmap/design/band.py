@@ -45,9 +45,9 @@ def checked_band(band: Any, scales: Scales) -> Band:
     given = ratios(band, "band", KINDS["r"], scales)
     ends = checks.axis(given, "band", least=0.0, most=checks.LARGEST_RATIO)
     if ends.size != 2:
-        raise InputError(f"band must be two frequencies; got {ends.size}")
+        raise InputError("band", f"must be two frequencies; got {ends.size}")
     if ends[0] <= 0.0:
-        raise InputError(f"band must be > 0; got {ends[0]:g}")
+        raise InputError("band", f"must be > 0; got {ends[0]:g}")
     return Band(float(ends[0]), float(ends[1]))
 
 

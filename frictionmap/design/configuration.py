@@ -67,7 +67,7 @@ def load_design(path: str | Path, overrides: Sequence[str] = (), threads: int | 
         question = checks.choice(given.get("question", QUESTIONS[0]), "question", QUESTIONS)
         arguments = _with_samples(question, _arguments(question, given), axes)
     except InputError as error:
-        raise (error if str(error).startswith("unknown") else within("design", error)) from None
+        raise (within("design", error) if error.where else error) from None
     function = _FUNCTIONS[question][0]
     if question in _THREADED:
         arguments["threads"] = threads
@@ -81,19 +81,21 @@ def _with_samples(question: str, arguments: dict[str, Any], axes: Mapping[str, A
     if axes is None:
         if quantile is not None:
             raise InputError(
-                f"cannot use quantile without [axes]: it is one over their samples; add [axes] or leave it "
-                f"out; got {quantile}"
+                "cannot use",
+                "quantile",
+                f"without [axes]: it is one over their samples; add [axes] or leave it out; got {quantile}",
             )
         return arguments
     if question != "robust":
         raise InputError(
-            "question must be robust in a configuration with [axes], whose points are samples; "
-            f"got {question}"
+            "question",
+            f"must be robust in a configuration with [axes], whose points are samples; got {question}",
         )
     if "spread" in arguments:
         raise InputError(
-            f"cannot use spread with [axes]: their samples take its place; leave one of them out; "
-            f"got {arguments['spread']}"
+            "cannot use",
+            "spread",
+            f"with [axes]: their samples take its place; leave one of them out; got {arguments['spread']}",
         )
     return {**arguments, "spread": Samples(axes) if quantile is None else Samples(axes, quantile)}
 
@@ -105,8 +107,7 @@ def _call_question(
     try:
         return function(system, **arguments)
     except InputError as error:
-        inner = str(error).removeprefix("cannot use ").partition(" ")[0] in _OF_RESPONSE
-        raise within("design.response" if inner else "design", error) from None
+        raise within("design.response" if error.where in _OF_RESPONSE else "design", error) from None
 
 
 def _arguments(question: str, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -114,7 +115,7 @@ def _arguments(question: str, given: Mapping[str, Any]) -> dict[str, Any]:
     _, needed, optional = _FUNCTIONS[question]
     for key in needed:
         if key not in given:
-            raise InputError(f"{key} must be given for question {question}; got nothing")
+            raise InputError(key, f"must be given for question {question}; got nothing")
     arguments = {key: given[key] for key in (*needed, *optional) if key in given}
     response = _response(arguments.pop("response", {}))
     return arguments | response
@@ -126,7 +127,7 @@ def _response(given: Any) -> dict[str, Any]:
         return {"quantity": given}
     if not isinstance(given, Mapping):
         raise InputError(
-            f"response must be a table of {', '.join(_OF_RESPONSE)}; got {checks.one_line(given)}"
+            "response", f"must be a table of {', '.join(_OF_RESPONSE)}; got {checks.one_line(given)}"
         )
     for key in given:
         if key not in _OF_RESPONSE:

@@ -60,7 +60,7 @@ def checked_plane(system: System, second: Any, ratio: Any) -> Plane:
         )
     ends = checks.axis(ratio, "ratio", least=0.0)
     if ends.size != 2:
-        raise InputError(f"ratio must be two numbers; got {ends.size}")
+        raise InputError("ratio", f"must be two numbers; got {ends.size}")
     return Plane(number, float(ends[0]), float(ends[1]))
 
 

@@ -72,8 +72,9 @@ def sampled(task: Task, curve: PerformanceCurve) -> Points:
     points = Points(beta, largest(curve.whole(beta)))
     if not points.size.any() and task.low >= curve.stuck.beta > 0.0:
         raise InputError(
-            f"beta must begin below {curve.stuck.beta:.6g}, at or above which the {task.response.describe()} "
-            f"is 0 over the whole band; got {task.low:g}"
+            "beta",
+            f"must begin below {curve.stuck.beta:.6g}, at or above which the {task.response.describe()} "
+            f"is 0 over the whole band; got {task.low:g}",
         )
     if not points.size.any():
         raise InputError(
@@ -250,7 +251,7 @@ def find_robust(task: Task, curve: PerformanceCurve, spread: float) -> Optimum:
         (points.beta * (1.0 - spread) >= task.low) & (points.beta * (1.0 + spread) <= task.high)
     ]
     if beta.size < 3:
-        raise InputError(f"spread must leave a range of friction to search; got {spread:g}")
+        raise InputError("spread", f"must leave a range of friction to search; got {spread:g}")
     robust = Points(beta, worst(beta))
     threshold = _threshold(task, curve, 1.0 - spread)
     if threshold is not None:

@@ -214,7 +214,7 @@ def robust(
     are those of the nominal structure.
     """
     if not isinstance(spread, Samples) and _checked_spread(spread) == 0.0:
-        raise InputError("spread must be > 0; got 0")
+        raise InputError("spread", "must be > 0; got 0")
     return least_peak(
         system, band, mass, mu, spread, quantity=quantity, contact=contact, beta=beta, threads=threads,
         units=units,
@@ -405,7 +405,7 @@ def _single(given: Any, name: str, kind: str, scales: Scales) -> Any:
 def _checked_spread(spread: Any) -> float:
     value = checks.number(spread, "spread", least=0.0)
     if value >= 1.0:
-        raise InputError(f"spread must be < 1; got {value:g}")
+        raise InputError("spread", f"must be < 1; got {value:g}")
     return value
 
 

@@ -42,7 +42,7 @@ class Samples:
     def __post_init__(self) -> None:
         value = checks.number(self.quantile, "quantile", above=0.0)
         if value > 1.0:
-            raise InputError(f"quantile must be <= 1; got {value:g}")
+            raise InputError("quantile", f"must be <= 1; got {value:g}")
 
     def of(self, system: System) -> Variations:
         """The variations of a system."""

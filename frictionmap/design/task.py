@@ -99,7 +99,7 @@ def checked_task(
 def _checked_range(beta: Any, scales: Scales) -> tuple[float, float]:
     ends = checks.axis(ratios(beta, "beta", KINDS["beta"], scales), "beta", least=0.0)
     if ends.size != 2:
-        raise InputError(f"beta must be two friction ratios; got {ends.size}")
+        raise InputError("beta", f"must be two friction ratios; got {ends.size}")
     return float(ends[0]), float(ends[1])
 
 
@@ -116,7 +116,7 @@ def range_of_friction(system: System, band: Band, spread: float = 0.0) -> tuple[
     stick = stick_limit(system, band.samples(_SOME, np.empty(0)), None)
     finite = stick[np.isfinite(stick) & (stick > 0.0)]
     if not finite.size:
-        raise InputError("beta must be two friction ratios where beta_stick is infinite or 0; got none")
+        raise InputError("beta", "must be two friction ratios where beta_stick is infinite or 0; got none")
     high = _ABOVE_STUCK * largest_stick(system, band, None).beta
     if np.isinf(high) or not system.modes.damping.any():
         high = min(high, _ABOVE_MEDIAN * float(np.median(finite)))

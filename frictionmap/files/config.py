@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import checks
 from ..datasets.provenance import to_toml
-from ..errors import InputError
+from ..errors import InputError, naming
 from ..model.periodic_load import WAVEFORMS
 from ..model.settings import BORDERS, CurveSettings, Solver, curve_settings
 from ..model.system import System
@@ -43,10 +43,6 @@ _RIVALS = {
 #: What tomllib raises; its own error is a ValueError, and so is that of a number with thousands of digits.
 _NOT_TOML = (ValueError, RecursionError)
 
-
-#: Beginnings of errors that do not begin with a key; after the first one a key follows.
-_KEY_FOLLOWS = "cannot use "
-_NO_KEY = ("cannot ", "unknown ")
 
 T = TypeVar("T")
 
@@ -141,10 +137,8 @@ def read_tree(path: str | Path, overrides: Sequence[str] = ()) -> tuple[dict, st
         raise InputError(
             f"cannot read configuration {path}: {reason}; give the path of a TOML file"
         ) from None
-    try:
+    with naming(f"configuration {path}"):
         tree = parse(text)
-    except InputError as error:
-        raise InputError(f"configuration {path}: {error}") from None
     _override_all(tree, overrides)
     return tree, to_toml(tree) if overrides else text
 
@@ -238,10 +232,7 @@ def _table(tree: Mapping[str, object], name: str) -> Mapping[str, object]:
 
 def within(section: str, error: InputError) -> InputError:
     """Return an error about a key of a table, with the table named."""
-    text = str(error)
-    if text.startswith(_KEY_FOLLOWS):
-        return InputError(f"{_KEY_FOLLOWS}{section}.{text.removeprefix(_KEY_FOLLOWS)}")
-    return InputError(f"[{section}]: {text}" if text.startswith(_NO_KEY) else f"{section}.{text}")
+    return error.renamed(f"{section}.{error.where}") if error.where else InputError(f"[{section}]: {error}")
 
 
 def _build(kind: Callable[..., T], table: Mapping[str, object], section: str) -> T:

@@ -40,13 +40,13 @@ from ..datasets.schema import (
     with_current_names,
 )
 from ..datasets.variables import coordinate, label_variable
-from ..errors import InputError
+from ..errors import InputError, naming
 from .checksums import RECORD, attributes_of, changed_description, damaged_chunk
 from .designs import design_form
 from .estimates import estimates_form
 from .slices import choose, further_axes
 
-__all__ = ["kind", "naming", "opened", "read", "standard_form"]
+__all__ = ["kind", "opened", "read", "standard_form"]
 
 _RATIOS_OF_CONTACTS = {
     *PER_CONTACT,
@@ -84,7 +84,7 @@ def read(
     """
     with opened(path) as ds:
         ds = _load(path, ds, only, at or {}, contacts)
-    with naming(path):
+    with naming(f"file {path}"):
         return standard_form(ds)
 
 
@@ -194,15 +194,6 @@ def _check_ours(path: Path, ds: xr.Dataset) -> None:
         raise InputError(f"cannot read {path}: its source is {source!r}; give a file written by frictionmap")
 
 
-@contextlib.contextmanager
-def naming(path: Path) -> Iterator[None]:
-    """Put the name of the file before error messages."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(f"file {path}: {error}") from None
-
-
 def _load(
     path: Path,
     ds: xr.Dataset,
@@ -212,7 +203,7 @@ def _load(
 ) -> xr.Dataset:
     """Load the wanted variables of a file, after all other checks."""
     in_store = MARKS in ds
-    with naming(path):
+    with naming(f"file {path}"):
         several = "contact" not in at and ds.sizes.get("contact", 0) > 1
         if several and not contacts:
             ds, several = ds.drop_dims("contact"), False

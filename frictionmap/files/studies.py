@@ -11,8 +11,8 @@ import xarray as xr
 from .. import regimes
 from ..datasets.labels import CELL, CELL_VARIABLES, COORDINATES, LABELS, MARKS
 from ..datasets.schema import check_structure, in_brackets
-from ..errors import InputError
-from .reading import naming, opened
+from ..errors import InputError, naming
+from .reading import opened
 from .slices import further_axes, natural
 from .summary import axis_lines, describe_reduction, header_lines, in_causes, in_cells, variable_lines
 
@@ -22,7 +22,7 @@ _AT_ONCE = 1 << 20
 
 def is_study(path: Path) -> bool:
     """Whether a file is a store or has further axes."""
-    with opened(path) as ds, naming(path):
+    with opened(path) as ds, naming(f"file {path}"):
         check_structure(ds, in_parts=True)
         return MARKS in ds or bool(further_axes(ds))
 
@@ -36,7 +36,7 @@ def describe_study(path: Path) -> str:
         An axis has no value, or the marks of blocks are not along the axes of the cells.
     """
     with opened(path) as found:
-        with naming(path):
+        with naming(f"file {path}"):
             ds = _reorder(found)
             _check_sizes(ds)
         lines = [*header_lines(ds, "map"), *axis_lines(ds), *variable_lines(ds)]

@@ -98,7 +98,7 @@ def general_curves(
     mu, r, beta = axes["mu"], axes["r"], axes["beta"]
     refuse_static(general_of(system), mu)
     if r[0] == 0.0:
-        raise InputError("r must be > 0 for response curves of such systems; got 0")
+        raise InputError("r", "must be > 0 for response curves of such systems; got 0")
     count = general_of(system).count
     limits = find_boundaries(system, r, mu)
     problem, modal = problem_of(system, r)

@@ -193,7 +193,7 @@ def refuse_static(general: ContactSystem, mu: np.ndarray) -> None:
     """Refuse mu > 1 with elastic contacts alone."""
     if general.elastic.all() and (mu != 1.0).any():
         raise InputError(
-            f"mu must be 1 with contact_stiffness: the spring would jump at break-away; got {mu.max():g}"
+            "mu", f"must be 1 with contact_stiffness: the spring would jump at break-away; got {mu.max():g}"
         )
 
 

@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 
 from ..errors import InputError
-from ..model.general import ContactSystem
+from ..model.general import LOOP, ContactSystem
 from ..model.system import System
 from .held import half_range, held_forces_of
 from .problem import general_of
@@ -52,8 +52,10 @@ def _refuse(general: ContactSystem) -> None:
     further = any(group.first.nu or group.first.wall_velocity or group.base for group in general.groups)
     if even or further or general.elastic.any():
         raise InputError(
-            f"{general.loop}; beta_stick of a loop is found for rigid contacts under odd harmonics only, "
-            f"without belts, joined walls or varying normal loads"
+            "cannot use",
+            "contacts",
+            f"{general.loop} together: {LOOP}; beta_stick of a loop is found for rigid contacts under "
+            f"odd harmonics only, without belts, joined walls or varying normal loads",
         )
 
 

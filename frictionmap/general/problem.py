@@ -6,7 +6,7 @@ import numpy as np
 
 from .._kernels.general.problem import Problem
 from ..errors import InputError
-from ..model.general import ContactSystem
+from ..model.general import LOOP, ContactSystem
 from ..model.system import System
 
 #: Largest rate of the fastest part of the motion, in tau.
@@ -140,7 +140,11 @@ def springs(general: ContactSystem) -> np.ndarray:
 def refuse_loop(general: ContactSystem) -> None:
     """Refuse contacts that close a loop, of which only the boundary to permanent sticking is determined."""
     if general.loop:
-        raise InputError(f"{general.loop}; leave one out, or find beta_stick with boundaries")
+        raise InputError(
+            "cannot use",
+            "contacts",
+            f"{general.loop} together: {LOOP}; leave one out, or find beta_stick with boundaries",
+        )
 
 
 def _refuse_low(rates: np.ndarray, r: np.ndarray) -> None:
@@ -149,8 +153,9 @@ def _refuse_low(rates: np.ndarray, r: np.ndarray) -> None:
     if low.any():
         worst = int(np.flatnonzero(low)[0])
         raise InputError(
-            f"r must be 0, or >= {r[worst] * rates[worst] / _HIGHEST_RATE:.3g} for this system: below, a "
-            f"period of the load has more than 10^4 periods of the fastest free motion; got {r[worst]:g}"
+            "r",
+            f"must be 0, or >= {r[worst] * rates[worst] / _HIGHEST_RATE:.3g} for this system: below, a "
+            f"period of the load has more than 10^4 periods of the fastest free motion; got {r[worst]:g}",
         )
 
 

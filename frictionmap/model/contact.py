@@ -69,7 +69,7 @@ class Contact:
             masses = (masses,)
         self._set("masses", tuple(masses) if isinstance(masses, (Sequence, np.ndarray)) else masses)
         if self.ratio is not None and self.force is not None:
-            raise InputError("cannot use ratio with force: both define the friction force; omit one")
+            raise InputError("cannot use", "ratio", "with force: both define the friction force; omit one")
         for name, ends in (
             ("ratio", {"least": 0.0}), ("force", {"least": 0.0}), ("mu", {"least": 1.0}),
             ("stiffness", {"above": 0.0}),
@@ -82,15 +82,16 @@ class Contact:
         self._set("wall_velocity", checks.number(self.wall_velocity, "wall_velocity"))
         if self.wall_velocity and self.kind != "fixed-wall":
             raise InputError(
-                f"wall_velocity must be 0 for {self.kind}, which has no wall of its own; "
-                f"got {self.wall_velocity:g}"
+                "wall_velocity",
+                f"must be 0 for {self.kind}, which has no wall of its own; got {self.wall_velocity:g}",
             )
         if self.name is not None and not isinstance(self.name, str):
-            raise InputError(f"name must be text; got {checks.one_line(self.name)}")
+            raise InputError("name", f"must be text; got {checks.one_line(self.name)}")
         if self.stiffness is not None and self.mu not in (None, 1.0):
             raise InputError(
-                f"mu must be 1 for a contact with stiffness: its spring would jump at break-away; "
-                f"got {self.mu:g}"
+                "mu",
+                f"must be 1 for a contact with stiffness: its spring would jump at break-away; "
+                f"got {self.mu:g}",
             )
         if self.normal_load is not None:
             self._set("nu", scalar_harmonics(self.normal_load, "normal_load"))
@@ -107,25 +108,28 @@ class Contact:
                 continue
             if not isinstance(self.stiffness, tuple):
                 raise InputError(
-                    f"{name} must be one number unless stiffness is a list, with one value per element; "
-                    f"got {list(given)}"
+                    name,
+                    f"must be one number unless stiffness is a list, with one value per element; "
+                    f"got {list(given)}",
                 )
             if len(given) != len(self.stiffness):
                 raise InputError(
-                    f"{name} must have as many values as stiffness ({len(self.stiffness)}); got {len(given)}"
+                    name, f"must have as many values as stiffness ({len(self.stiffness)}); got {len(given)}"
                 )
 
     def _check_normal_load(self) -> None:
         if self.nu and self.stiffness is not None:
             raise InputError(
-                "cannot use normal_load with stiffness: elastic contacts have a constant normal "
-                "load; omit one"
+                "cannot use",
+                "normal_load",
+                "with stiffness: elastic contacts have a constant normal load; omit one",
             )
         least = least_value(self.nu)
         if least < -1.0:
             raise InputError(
-                f"normal_load must leave 1 + normal_load(tau) >= 0, as contacts that separate are another "
-                f"model; got {1.0 + least:.3g} at its least"
+                "normal_load",
+                f"must leave 1 + normal_load(tau) >= 0, as contacts that separate are another "
+                f"model; got {1.0 + least:.3g} at its least",
             )
 
     @property
@@ -167,7 +171,7 @@ def numbers(given: Any, name: str, **ends: float) -> float | tuple[float, ...]:
     if not listed and not (checks.is_array(given) and checks.array(given, name).ndim):
         return checks.number(given, name, **ends)
     if len(given) == 0:
-        raise InputError(f"{name} must have at least one value; got none")
+        raise InputError(name, "must have at least one value; got none")
     return tuple(checks.number(one, f"{name}[{k}]", above=0.0) for k, one in enumerate(given))
 
 
@@ -188,20 +192,16 @@ def least_value(harmonics: Mapping[int, complex]) -> float:
 
 def _name_contact(k: int, error: InputError) -> InputError:
     """Return an error about a key of a contact, with the contact named."""
-    text = str(error)
-    key = "cannot use "
-    if text.startswith(key):
-        return InputError(f"{key}contacts[{k}].{text.removeprefix(key)}")
-    named = f"contacts[{k}].{text}"
-    return InputError(named)
+    name = f"contacts[{k}]"
+    return error.renamed(f"{name}.{error.where}") if error.where else InputError(name, f": {error}")
 
 
 def checked_contacts(given: object) -> tuple[Contact, ...]:
     """Check a list of contacts; a mapping is one as in a configuration."""
     if not isinstance(given, Sequence) or isinstance(given, (str, bytes)) or not given:
-        raise InputError(f"contacts must be a list of contacts; got {checks.one_line(given)}")
+        raise InputError("contacts", f"must be a list of contacts; got {checks.one_line(given)}")
     if len(given) > MOST_CONTACTS:
-        raise InputError(f"contacts must be at most {MOST_CONTACTS}; got {len(given)}")
+        raise InputError("contacts", f"must be at most {MOST_CONTACTS}; got {len(given)}")
     valid = [one.name for one in fields(Contact) if one.init]
     found = []
     for k, one in enumerate(given, 1):
@@ -217,6 +217,6 @@ def checked_contacts(given: object) -> tuple[Contact, ...]:
             except InputError as error:
                 raise _name_contact(k, error) from None
         if not isinstance(one, Contact):
-            raise InputError(f"contacts[{k}] must be a Contact; got {checks.one_line(one)}")
+            raise InputError(f"contacts[{k}]", f"must be a Contact; got {checks.one_line(one)}")
         found.append(one)
     return tuple(found)

@@ -40,8 +40,9 @@ class Decoupling:
     def _checked(self, error: float) -> float:
         if not error <= self.allowed:
             raise InputError(
-                f"decouple must be at least {error:.2g}, the change of linear responses in the range of r "
-                f"when C is replaced by its diagonal; got {self.allowed:g}"
+                "decouple",
+                f"must be at least {error:.2g}, the change of linear responses in the range of r "
+                f"when C is replaced by its diagonal; got {self.allowed:g}",
             )
         return error
 

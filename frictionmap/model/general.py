@@ -41,6 +41,9 @@ KEYS = (
 #: and below any difference that is meant.
 _PARALLEL = 1e-12
 
+#: Why rigid contacts with linearly dependent vectors have no motion.
+LOOP = "they close a loop, and their forces in a common stop are not determined"
+
 
 class Definition(Protocol):
     """Keys of a system that are read here, checked or not yet."""
@@ -142,7 +145,7 @@ class ContactSystem:
     forces: Mapping[int, np.ndarray]  # phasors (n,) of the loads on the masses, by order
     base: Mapping[int, complex]  # phasors of the base motion
     offset: np.ndarray  # (n,) constant loads
-    loop: str = ""  # which rigid contacts close a loop and why that matters, in words; empty without a loop
+    loop: str = ""  # numbers of the rigid contacts that close a loop; empty without one
 
     @property
     def count(self) -> int:
@@ -185,16 +188,20 @@ def uses_general(system: Definition) -> bool:
 def contact_system(system: Definition) -> ContactSystem:
     """Collect and check the contacts and loads of a system, in whichever form they are given."""
     if system.harmonics is not None and system.waveform is None:
-        raise InputError("cannot use harmonics without waveform: it is the number of its harmonics; omit it")
+        raise InputError(
+            "cannot use", "harmonics", "without waveform: it is the number of its harmonics; omit it"
+        )
     groups = _groups(system)
     forces, base = _loads(system)
     if system.load_offset is not None and system.excitation == "base":
-        raise InputError("cannot use load_offset with base excitation: it is a force on each mass; omit one")
+        raise InputError(
+            "cannot use", "load_offset", "with base excitation: it is a force on each mass; omit one"
+        )
     offset = _offset(system.load_offset, system.n)
     found = ContactSystem(groups, forces, base, offset, _describe_loop(groups))
     if not found.forces and not found.base:
         if not any(group.first.wall_velocity for group in groups):
-            raise InputError("load_harmonics must have a harmonic that is not zero; got none")
+            raise InputError("load_harmonics", "must have a harmonic that is not zero; got none")
         raise InputError(
             "cannot compute without a load: a belt alone makes vibrations of a period of their own; "
             "give load_harmonics"
@@ -234,12 +241,12 @@ def check_contacts(system: Definition) -> tuple[Contact, ...] | None:
         ("contact_stiffness", None), ("wall_velocity", 0.0), ("normal_load", None),
     ):  # fmt: skip
         if getattr(system, name) != default:
-            raise InputError(f"cannot use {name} with contacts: each contact has its own; omit one")
+            raise InputError("cannot use", name, "with contacts: each contact has its own; omit one")
     found = checked_contacts(system.contacts)
     first = (found[0].kind, found[0].masses)
     given = (system.contact, tuple(system.contact_masses))
     if given not in (first, ("fixed-wall", (1,))):
-        raise InputError("cannot use contact with contacts: both define where friction acts; omit one")
+        raise InputError("cannot use", "contact", "with contacts: both define where friction acts; omit one")
     return found
 
 
@@ -256,10 +263,10 @@ def contact_rows(masses: Sequence[int | str], kind: str, dofs: Dofs, key: str) -
     count = 2 if kind == "between-masses" else 1
     if len(masses) != count:
         wanted = "two masses [A, B]" if count == 2 else "one mass"
-        raise InputError(f"{key} must name {wanted} for {kind}; got {list(masses)}")
+        raise InputError(key, f"must name {wanted} for {kind}; got {list(masses)}")
     numbers = tuple(dofs.number(mass, f"{key}[{k}]") for k, mass in enumerate(masses))
     if count == 2 and numbers[0] >= numbers[1]:
-        raise InputError(f"{key} must be [A, B] with A < B; got {list(masses)}")
+        raise InputError(key, f"must be [A, B] with A < B; got {list(masses)}")
     return numbers
 
 
@@ -281,12 +288,12 @@ def _groups(system: Definition) -> tuple[MergedContact, ...]:
     elements = [(k, element) for k, one in enumerate(contacts, 1) for element in one.elements]
     if len(elements) > MOST_CONTACTS:
         key = "contact_stiffness" if system.contacts is None else "contacts"
-        raise InputError(f"{key} must have at most {MOST_CONTACTS} elements in all; got {len(elements)}")
+        raise InputError(key, f"must have at most {MOST_CONTACTS} elements in all; got {len(elements)}")
     for k, contact in elements:
         name = f"contacts[{k}]" if system.contacts is not None else "contact"
         base = int(contact.kind == "joined-base-wall")
         if base and system.excitation != "base":
-            raise InputError(f"{name} must have base excitation for a joined-base-wall; got 'force'")
+            raise InputError(name, "must have base excitation for a joined-base-wall; got 'force'")
         vector = vector_of(contact, system.dofs, mass_key(system, k))
         for i, other in enumerate(found):
             same = np.array_equal(other.vector, vector) and other.base == base
@@ -294,20 +301,21 @@ def _groups(system: Definition) -> tuple[MergedContact, ...]:
                 continue
             if contact.wall_velocity != other.first.wall_velocity or contact.nu != other.first.nu:
                 raise InputError(
-                    f"{name} must have the wall_velocity and the normal_load of {other.name}, with which it "
-                    f"is parallel; got another one"
+                    name,
+                    f"must have the wall_velocity and the normal_load of {other.name}, with which it "
+                    f"is parallel; got another one",
                 )
             found[i] = MergedContact((*other.members, contact), vector, base)
             break
         else:
             found.append(MergedContact((contact,), vector, base))
     if not any(one.ratio or one.force for one in contacts):
-        raise InputError("contacts must have a ratio or a force > 0; got none")
+        raise InputError("contacts", "must have a ratio or a force > 0; got none")
     return tuple(found)
 
 
 def _describe_loop(groups: Sequence[MergedContact]) -> str:
-    """Name the rigid contacts whose vectors are linearly dependent; empty if there are none."""
+    """List the rigid contacts whose vectors are linearly dependent; empty if there are none."""
     rigid = [k for k, group in enumerate(groups) if group.stiffness is None]
     if not rigid:
         return ""
@@ -317,11 +325,7 @@ def _describe_loop(groups: Sequence[MergedContact]) -> str:
         return ""
     # a contact is in a loop if the others move all that it moves
     loop = [rigid[k] + 1 for k in range(len(rigid)) if _rank(np.delete(w, k, axis=0)) == rank]
-    names = ", ".join(map(str, loop))
-    return (
-        f"cannot use contacts {names} together: they close a loop, and their forces in a common stop are not "
-        f"determined"
-    )
+    return ", ".join(map(str, loop))
 
 
 def _rank(w: np.ndarray) -> int:
@@ -334,7 +338,7 @@ def _offset(given: object, n: int) -> np.ndarray:
         return np.zeros(n)
     values = checks.array(given, "load_offset").astype(float)
     if values.shape != (n,) or not np.isfinite(values).all():
-        raise InputError(f"load_offset must have one finite number per mass ({n}); got {values.tolist()}")
+        raise InputError("load_offset", f"must have one finite number per mass ({n}); got {values.tolist()}")
     return values
 
 
@@ -342,9 +346,9 @@ def _loads(system: Definition) -> tuple[dict[int, np.ndarray], dict[int, complex
     """Phasors of the loads on the masses, and of the base motion, by order."""
     ways = [name for name in ("load_harmonics", "load_file", "waveform") if getattr(system, name) is not None]
     if len(ways) > 1:
-        raise InputError(f"cannot use {ways[0]} with {ways[1]}: both define the load; omit one")
+        raise InputError("cannot use", ways[0], f"with {ways[1]}: both define the load; omit one")
     if ways and system.load is not None:
-        raise InputError(f"cannot use load with {ways[0]}: both define the load; omit one")
+        raise InputError("cannot use", "load", f"with {ways[0]}: both define the load; omit one")
     given: Any = system.load_harmonics
     if ways == ["load_file"]:
         given = load_table(system.load_file)
@@ -368,8 +372,9 @@ def _waveform(system: Definition) -> PeriodicLoad:
         return waveform(str(given), highest)
     if not str(given).lower().endswith(".csv"):
         raise InputError(
-            f"waveform must be one of {', '.join(WAVEFORMS)}, or a CSV file of one period with the columns "
-            f"time, force; got {given!r}"
+            "waveform",
+            f"must be one of {', '.join(WAVEFORMS)}, or a CSV file of one period with the columns "
+            f"time, force; got {given!r}",
         )
     return sampled(given, highest)
 
@@ -403,15 +408,15 @@ def _from_mapping(
     if all(np.ndim(value) == 0 for value in given.values()):
         return _on_load_mass(system, scalar_harmonics(given, "load_harmonics"))
     if system.excitation == "base":
-        raise InputError("load_harmonics must have one phasor per order for base excitation; got vectors")
+        raise InputError("load_harmonics", "must have one phasor per order for base excitation; got vectors")
     forces = {}
     for key, value in given.items():
         n = order(key, "load_harmonics: order")
         vector = checks.array(value, f"load_harmonics[{key}]").astype(complex)
         if vector.shape != (system.n,) or not np.isfinite(vector).all():
             raise InputError(
-                f"load_harmonics[{key}] must have one finite number per mass ({system.n}); "
-                f"got {vector.tolist()}"
+                f"load_harmonics[{key}]",
+                f"must have one finite number per mass ({system.n}); got {vector.tolist()}",
             )
         if vector.any():
             forces[n] = vector
@@ -424,8 +429,9 @@ def _from_entries(
     """Harmonics as a list of { n, mass, amplitude, phase_deg }."""
     if not isinstance(given, Sequence) or isinstance(given, (str, bytes)):
         raise InputError(
-            f"{name} must be a list of {{ n, mass, amplitude, phase_deg }}, a mapping of orders to phasors "
-            f"or a PeriodicLoad; got {checks.one_line(given)}"
+            name,
+            f"must be a list of {{ n, mass, amplitude, phase_deg }}, a mapping of orders to phasors "
+            f"or a PeriodicLoad; got {checks.one_line(given)}",
         )
     forces: dict[int, np.ndarray] = {}
     base: dict[int, complex] = {}
@@ -435,15 +441,16 @@ def _from_entries(
         if "mass" not in entry:
             if system.excitation != "base":
                 raise InputError(
-                    f"{name}[{k}] must name a mass: without one it is a motion of the base, which "
-                    f'excitation = "base" needs; got none'
+                    f"{name}[{k}]",
+                    "must name a mass: without one it is a motion of the base, which "
+                    'excitation = "base" needs; got none',
                 )
             base[n] = base.get(n, 0.0) + value
             continue
         if system.excitation == "base":
             raise InputError(
-                f"{name}[{k}] must have no mass with base excitation, which loads all masses; "
-                f"got mass {entry['mass']}"
+                f"{name}[{k}]",
+                f"must have no mass with base excitation, which loads all masses; got mass {entry['mass']}",
             )
         mass = entry["mass"]
         mass = int(mass) if isinstance(mass, float) and mass == math.floor(mass) else mass

@@ -63,8 +63,9 @@ class Matrices:
         for name, matrix in zip(NAMES, scaled, strict=True):
             if matrix is not None and not in_range(matrix, name):
                 raise InputError(
-                    f"frequency_scale and stiffness_scale must leave {name} with entries of "
-                    f"{1.0 / LARGEST:g} to {LARGEST:g}; got {frequency:g} and {stiffness:g}"
+                    "frequency_scale and stiffness_scale",
+                    f"must leave {name} with entries of {1.0 / LARGEST:g} to {LARGEST:g}; "
+                    f"got {frequency:g} and {stiffness:g}",
                 )
         return scaled
 
@@ -79,8 +80,9 @@ def full_matrices(structure: Structure) -> Matrices:
     """
     if structure.n > _MOST_WHOLE:
         raise InputError(
-            f"matrices must have at most {_MOST_WHOLE} degrees of freedom, unless they are reduced (key "
-            f"reduce); got {structure.n}"
+            "matrices",
+            f"must have at most {_MOST_WHOLE} degrees of freedom, unless they are reduced (key "
+            f"reduce); got {structure.n}",
         )
     dense = {
         name: array if isinstance(array, np.ndarray) else array.toarray()
@@ -90,9 +92,10 @@ def full_matrices(structure: Structure) -> Matrices:
     if massless:
         largest = np.linalg.eigvalsh(dense["M"])[-1]
         raise InputError(
-            f"matrices: M must be positive definite; got a singular matrix, with eigenvalues from 0 to "
+            "matrices",
+            f": M must be positive definite; got a singular matrix, with eigenvalues from 0 to "
             f"{largest:.3g}: degree of freedom {structure.dofs.word(massless[0])} has no mass; "
-            f"eliminate it with reduce"
+            f"eliminate it with reduce",
         )
     return definite(dense, structure.dofs, structure.source)
 
@@ -124,8 +127,9 @@ def _definite(array: np.ndarray, name: str) -> None:
     if eigenvalues[0] <= rounding:
         word = "a singular" if eigenvalues[0] >= -rounding else "an indefinite"
         raise InputError(
-            f"matrices: {name} must be positive definite; got {word} matrix, with eigenvalues from "
-            f"{eigenvalues[0]:.3g} to {eigenvalues[-1]:.3g}"
+            "matrices",
+            f": {name} must be positive definite; got {word} matrix, with eigenvalues from "
+            f"{eigenvalues[0]:.3g} to {eigenvalues[-1]:.3g}",
         )
 
 
@@ -133,6 +137,7 @@ def _semidefinite(damping: np.ndarray) -> None:
     eigenvalues = np.linalg.eigvalsh(damping)
     if eigenvalues[0] < -TOLERANCE * np.abs(eigenvalues).max():
         raise InputError(
-            f"matrices: C must be positive semi-definite; got an indefinite matrix, which feeds energy into "
-            f"the motion, with eigenvalues from {eigenvalues[0]:.3g} to {eigenvalues[-1]:.3g}"
+            "matrices",
+            f": C must be positive semi-definite; got an indefinite matrix, which feeds energy into "
+            f"the motion, with eigenvalues from {eigenvalues[0]:.3g} to {eigenvalues[-1]:.3g}",
         )

@@ -78,17 +78,17 @@ class PeriodicLoad:
         )
         highest = checks.whole(harmonics, "harmonics", least=1, most=MOST_HARMONICS)
         if times.ndim != 1 or times.shape != values.shape:
-            raise InputError(f"force must have as many values as t ({times.size}); got {values.size}")
+            raise InputError("force", f"must have as many values as t ({times.size}); got {values.size}")
         if values.size < 2 * highest + 1:
             raise InputError(
-                f"force must have at least 2 harmonics + 1 = {2 * highest + 1} samples; got {values.size}"
+                "force", f"must have at least 2 harmonics + 1 = {2 * highest + 1} samples; got {values.size}"
             )
         if not (np.isfinite(times).all() and np.isfinite(values).all()):
-            raise InputError("force must be finite at finite times; got a value that is not")
+            raise InputError("force", "must be finite at finite times; got a value that is not")
         steps = np.diff(times)
         if not (steps > 0.0).all() or np.ptp(steps) > 1e-6 * steps.mean():
             raise InputError(
-                f"t must increase in equal steps; got steps from {steps.min():g} to {steps.max():g}"
+                "t", f"must increase in equal steps; got steps from {steps.min():g} to {steps.max():g}"
             )
         spectrum = np.fft.rfft(values) / values.size
         phasors = 2.0 * spectrum[1 : highest + 1]
@@ -124,11 +124,11 @@ def _rows(path: Path, columns: Sequence[str], name: str) -> list[dict[str, float
             lines = list(csv.reader(line for line in file if line.strip() and not line.startswith("#")))
     except (OSError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{name}: cannot read {path}: {reason}; give a CSV file") from None
+        raise InputError(name, f": cannot read {path}: {reason}; give a CSV file") from None
     header = [word.strip() for word in lines[0]] if lines else []
     if header != list(columns):
         raise InputError(
-            f"{name} must have the columns {', '.join(columns)}; got {', '.join(header) or 'none'} in {path}"
+            name, f"must have the columns {', '.join(columns)}; got {', '.join(header) or 'none'} in {path}"
         )
     rows = []
     for number, line in enumerate(lines[1:], 2):
@@ -136,10 +136,10 @@ def _rows(path: Path, columns: Sequence[str], name: str) -> list[dict[str, float
             rows.append(dict(zip(columns, map(float, line), strict=True)))
         except ValueError:
             raise InputError(
-                f"{name} must have a number in each column; got {','.join(line)!r} in line {number} of {path}"
+                name, f"must have a number in each column; got {','.join(line)!r} in line {number} of {path}"
             ) from None
     if not rows:
-        raise InputError(f"{name} must have at least one line of numbers; got none in {path}")
+        raise InputError(name, f"must have at least one line of numbers; got none in {path}")
     return rows
 
 
@@ -178,7 +178,7 @@ def phasor(entry: Mapping[str, Any], name: str) -> complex:
 def check_entry(entry: object, name: str, valid: Sequence[str]) -> Mapping[str, Any]:
     """Check the keys of one harmonic."""
     if not isinstance(entry, Mapping):
-        raise InputError(f"{name} must be a table {{ {', '.join(valid)} }}; got {checks.one_line(entry)}")
+        raise InputError(name, f"must be a table {{ {', '.join(valid)} }}; got {checks.one_line(entry)}")
     for key in entry:
         if key not in valid:
             raise InputError(
@@ -188,8 +188,9 @@ def check_entry(entry: object, name: str, valid: Sequence[str]) -> Mapping[str, 
     polar, cartesian = {"amplitude", "phase_deg"} & set(entry), {"re", "im"} & set(entry)
     if "n" not in entry or bool(cartesian) == ("amplitude" in entry) or (polar and cartesian):
         raise InputError(
-            f"{name} must have n, and amplitude and phase_deg or re and im; "
-            f"got {', '.join(map(str, entry)) or 'nothing'}"
+            name,
+            f"must have n, and amplitude and phase_deg or re and im; "
+            f"got {', '.join(map(str, entry)) or 'nothing'}",
         )
     return entry
 
@@ -200,7 +201,7 @@ def scalar_harmonics(given: object, name: str) -> dict[int, complex]:
     if isinstance(given, Mapping):
         for n, value in given.items():
             if not isinstance(value, (int, float, complex, np.number)) or isinstance(value, bool):
-                raise InputError(f"{name}[{n}] must be a number; got {checks.one_line(value)}")
+                raise InputError(f"{name}[{n}]", f"must be a number; got {checks.one_line(value)}")
             found[order(n, f"{name}: order")] = complex(value)
     elif isinstance(given, Sequence) and not isinstance(given, (str, bytes)):
         for k, one in enumerate(given):
@@ -209,10 +210,11 @@ def scalar_harmonics(given: object, name: str) -> dict[int, complex]:
             found[n] = found.get(n, 0.0) + phasor(entry, f"{name}[{k}]")
     else:
         raise InputError(
-            f"{name} must be a list of {{ n, amplitude, phase_deg }} or a mapping of orders to phasors; "
-            f"got {checks.one_line(given)}"
+            name,
+            f"must be a list of {{ n, amplitude, phase_deg }} or a mapping of orders to phasors; "
+            f"got {checks.one_line(given)}",
         )
     for n, value in found.items():
         if not (math.isfinite(value.real) and math.isfinite(value.imag)):
-            raise InputError(f"{name} must be finite; got {value} at order {n}")
+            raise InputError(name, f"must be finite; got {value} at order {n}")
     return {n: value for n, value in found.items() if value != 0.0}

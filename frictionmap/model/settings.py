@@ -132,12 +132,12 @@ class Solver:
         checks.choice(self.skip, "skip", get_args(Skip))
         checks.choice(self.steady, "steady", get_args(Steady))
         if isinstance(self.outputs, str) or not isinstance(self.outputs, Sequence):
-            raise InputError(f"outputs must be a list of names; got {checks.one_line(self.outputs)}")
+            raise InputError("outputs", f"must be a list of names; got {checks.one_line(self.outputs)}")
         for name in self.outputs:
             checks.choice(name, "outputs", (*OUTPUTS, *GENERAL_OUTPUTS))
         if not self.outputs:
             raise InputError(
-                f"outputs must name at least one of {', '.join((*OUTPUTS, *GENERAL_OUTPUTS))}; got none"
+                "outputs", f"must name at least one of {', '.join((*OUTPUTS, *GENERAL_OUTPUTS))}; got none"
             )
         object.__setattr__(self, "outputs", tuple(dict.fromkeys(self.outputs)))
 
@@ -209,11 +209,11 @@ def curve_settings(
     given = QUANTITIES if quantities is None else quantities
     valid: tuple[Quantity, ...] = get_args(Quantity)
     if isinstance(given, str) or not isinstance(given, Sequence):
-        raise InputError(f"quantities must be a list of names; got {checks.one_line(given)}")
+        raise InputError("quantities", f"must be a list of names; got {checks.one_line(given)}")
     for name in given:
         checks.choice(name, "quantities", valid)
     if not given:
-        raise InputError(f"quantities must name at least one of {', '.join(valid)}; got none")
+        raise InputError("quantities", f"must name at least one of {', '.join(valid)}; got none")
     if harmonics is None:
         harmonics = HARMONICS if "harmonics" in given else 0
     harmonics = checks.whole(harmonics, "harmonics", **RANGES["harmonics"])

@@ -61,16 +61,16 @@ def _sequence(values: Any, name: str, what: str) -> Sequence:
             return list(given)
     elif isinstance(values, Sequence) and not isinstance(values, (str, bytes)):
         return list(values)
-    raise InputError(f"{name} must be a list of {what}; got {checks.one_line(values)}")
+    raise InputError(name, f"must be a list of {what}; got {checks.one_line(values)}")
 
 
 def _ratios(values: object, name: str) -> tuple[float, ...]:
     values = _sequence(values, name, "numbers")
     if len(values) == 0:
-        raise InputError(f"{name} must have at least one value; got none")
+        raise InputError(name, "must have at least one value; got none")
     ratios = tuple(checks.number(value, f"{name}[{index}]", above=0.0) for index, value in enumerate(values))
     if ratios[0] != 1.0:
-        raise InputError(f"{name}[0] must be 1, the unit of the others; got {ratios[0]:g}")
+        raise InputError(f"{name}[0]", f"must be 1, the unit of the others; got {ratios[0]:g}")
     return ratios
 
 
@@ -81,7 +81,7 @@ def _damping(values: object, n: int) -> tuple[float, ...]:
         return (checks.number(values, "damping_ratios", **bounds),) * n
     values = _sequence(values, "damping_ratios", "numbers")
     if len(values) != n:
-        raise InputError(f"damping_ratios must be one number, or one per mode ({n}); got {len(values)}")
+        raise InputError("damping_ratios", f"must be one number, or one per mode ({n}); got {len(values)}")
     return tuple(
         checks.number(value, f"damping_ratios[{index}]", **bounds) for index, value in enumerate(values)
     )
@@ -97,10 +97,10 @@ def _complex(value: object, name: str) -> complex:
 def _load(values: object, n: int) -> tuple[complex, ...]:
     values = _sequence(values, "load", "numbers")
     if len(values) != n:
-        raise InputError(f"load must have one number per mass ({n}); got {len(values)}")
+        raise InputError("load", f"must have one number per mass ({n}); got {len(values)}")
     load = tuple(_complex(value, f"load[{index}]") for index, value in enumerate(values))
     if not any(load):
-        raise InputError("load must have a value that is not zero; got none")
+        raise InputError("load", "must have a value that is not zero; got none")
     return load
 
 
@@ -269,8 +269,10 @@ class System:
         self._set("_contact_system", contact_system(self))
         if self.reduce is not None and uses_general(self):
             raise InputError(
-                "cannot use reduce with several contacts, springs, belts or loads of several harmonics: they "
-                "need all degrees of freedom; omit it"
+                "cannot use",
+                "reduce",
+                "with several contacts, springs, belts or loads of several harmonics: they "
+                "need all degrees of freedom; omit it",
             )
         if self.n > 1 or self.matrices is not None:
             _ = self.modes  # errors that only the modes reveal are raised here
@@ -281,13 +283,15 @@ class System:
     def _check_chain(self) -> None:
         for name in ("reduce", "rayleigh", "decouple"):
             if getattr(self, name) is not None:
-                raise InputError(f"cannot use {name} without matrices: a chain needs no such key; omit it")
+                raise InputError("cannot use", name, "without matrices: a chain needs no such key; omit it")
         for name, default in (("frequency_scale", None), ("stiffness_scale", 1.0)):
             given = getattr(self, name)
             if isinstance(given, bool) or given != default:  # True == 1.0
                 raise InputError(
-                    f"cannot use {name} = {given!r} without matrices: its units are those of the first mass "
-                    f"and spring; omit it"
+                    "cannot use",
+                    name,
+                    f"= {given!r} without matrices: its units are those of the first mass "
+                    f"and spring; omit it",
                 )
         masses = _ratios((1.0,) if self.mass_ratios is None else self.mass_ratios, "mass_ratios")
         springs = _ratios(
@@ -295,8 +299,8 @@ class System:
         )
         if len(springs) != len(masses):
             raise InputError(
-                f"stiffness_ratios must have as many values as mass_ratios ({len(masses)}); "
-                f"got {len(springs)}"
+                "stiffness_ratios",
+                f"must have as many values as mass_ratios ({len(masses)}); got {len(springs)}",
             )
         self._set("mass_ratios", masses)
         self._set("stiffness_ratios", springs)
@@ -306,8 +310,9 @@ class System:
             given = getattr(self, name)
             if given is not None:
                 raise InputError(
-                    f"cannot use {name} = {checks.one_line(given)} with matrices: both define the structure; "
-                    f"omit one"
+                    "cannot use",
+                    name,
+                    f"= {checks.one_line(given)} with matrices: both define the structure; omit one",
                 )
         given = self.matrices
         if isinstance(given, Matrices):
@@ -344,9 +349,11 @@ class System:
             return
         values = _sequence(self.rayleigh, "rayleigh", "two numbers")
         if len(values) != 2:
-            raise InputError(f"rayleigh must be two numbers [a, b], C = a M + b K; got {list(values)}")
+            raise InputError("rayleigh", f"must be two numbers [a, b], C = a M + b K; got {list(values)}")
         if self.damping_ratios is not None:
-            raise InputError("cannot use damping_ratios with rayleigh: both define the damping; omit one")
+            raise InputError(
+                "cannot use", "damping_ratios", "with rayleigh: both define the damping; omit one"
+            )
         pair = tuple(checks.number(one, f"rayleigh[{k}]", least=0.0) for k, one in enumerate(values))
         self._set("rayleigh", pair)
 
@@ -358,7 +365,7 @@ class System:
         if isinstance(self.matrices, Matrices) and self.matrices.damping is not None:
             for name, ratios in (("damping_ratios", given), ("rayleigh", self.rayleigh)):
                 if ratios is not None:
-                    raise InputError(f"cannot use {name} with matrices: C defines the damping; omit one")
+                    raise InputError("cannot use", name, "with matrices: C defines the damping; omit one")
         elif self.rayleigh is None:
             self._set("damping_ratios", _damping(0.0 if given is None else given, self.n))
 
@@ -370,7 +377,7 @@ class System:
         checks.choice(self.contact, "contact", CONTACTS)
         if self.contact == "between-masses" and self.n == 1:
             raise InputError(
-                "contact must be fixed-wall or joined-base-wall for one mass; got 'between-masses'"
+                "contact", "must be fixed-wall or joined-base-wall for one mass; got 'between-masses'"
             )
         masses = _sequence(self.contact_masses, "contact_masses", "whole numbers")
         self._set("contact_masses", contact_rows(masses, self.contact, self.dofs, mass_key(self, 1)))
@@ -382,19 +389,20 @@ class System:
         checks.choice(self.damping_reference, "damping_reference", DAMPING_REFERENCES)
         if self.base_motion and self.excitation != "base":
             raise InputError(
-                "excitation must be base for a joined-base-wall, whose base loads the structure; "
-                f"got {self.excitation!r}"
+                "excitation",
+                "must be base for a joined-base-wall, whose base loads the structure; "
+                f"got {self.excitation!r}",
             )
         base = self.excitation == "base"
         if self.damping_reference == "base" and not base:
-            raise InputError("damping_reference must be ground for a force-excited structure; got 'base'")
+            raise InputError("damping_reference", "must be ground for a force-excited structure; got 'base'")
         if self.load is not None:
             for wrong, (other, why) in (
                 (base, ("base excitation", "the base loads all masses")),
                 (self.load_mass is not None, ("load_mass", "both define the load")),
             ):
                 if wrong:
-                    raise InputError(f"cannot use load with {other}: {why}; omit one of them")
+                    raise InputError("cannot use", "load", f"with {other}: {why}; omit one of them")
             self._set("load", _load(self.load, self.n))
             return
         first = self.dofs.numbers[0]
@@ -403,8 +411,9 @@ class System:
         if base and self.load_mass != first:
             cause = "joined-base-wall" if self.base_motion else "base excitation"
             raise InputError(
-                f"load_mass must be {first} for {cause}: the base loads the structure through its springs to "
-                f"the ground; got {self.load_mass}"
+                "load_mass",
+                f"must be {first} for {cause}: the base loads the structure through its springs to "
+                f"the ground; got {self.load_mass}",
             )
 
     @property
@@ -573,7 +582,7 @@ class System:
         zeta = 0.5 * (a / omega + b * omega)
         if zeta.max() > checks.LARGEST_DAMPING:
             raise InputError(
-                f"rayleigh must make damping ratios <= {checks.LARGEST_DAMPING:g}; got {zeta.max():.3g}"
+                "rayleigh", f"must make damping ratios <= {checks.LARGEST_DAMPING:g}; got {zeta.max():.3g}"
             )
         return zeta
 
@@ -581,8 +590,9 @@ class System:
         worst = int(np.argmax(zeta))
         if zeta[worst] > checks.LARGEST_DAMPING:
             raise InputError(
-                f"matrices: C must make damping ratios <= {checks.LARGEST_DAMPING:g}; got "
-                f"{zeta[worst]:.3g} of mode {worst + 1}"
+                "matrices",
+                f": C must make damping ratios <= {checks.LARGEST_DAMPING:g}; got "
+                f"{zeta[worst]:.3g} of mode {worst + 1}",
             )
 
     @cached_property

@@ -114,8 +114,9 @@ class Number:
             )
         one, many = _COUNTED.get(self.key, (f"value of {self.key}", f"values of {self.key}"))
         return InputError(
-            f"cannot use axis {self.text}: the system has {count} {one if count == 1 else many}; "
-            f"use an index <= {count}"
+            "cannot use",
+            "axis",
+            f"{self.text}: the system has {count} {one if count == 1 else many}; use an index <= {count}",
         )
 
 
@@ -221,17 +222,20 @@ def checked_variations(system: System, axes: "Mapping[str, Any] | Variations") -
         return axes
     if not isinstance(axes, Mapping) or not axes:
         raise InputError(
-            "axes must be a mapping such as {'damping_ratios': [0, 0.01]} with at least one axis; "
-            f"got {checks.one_line(axes)}"
+            "axes",
+            "must be a mapping such as {'damping_ratios': [0, 0.01]} with at least one axis; "
+            f"got {checks.one_line(axes)}",
         )
     found = tuple(_axis(name, values) for name, values in axes.items())
     numbers = [number for axis in found for number in axis.numbers]
     for number in numbers:
         rivals = [other for other in numbers if other.key == number.key and other is not number]
         if any(other == number or other.place is None or number.place is None for other in rivals):
-            raise InputError(f"axes must change {number.key} in one way only; got {', '.join(axes)}")
+            raise InputError("axes", f"must change {number.key} in one way only; got {', '.join(axes)}")
     if len({axis.name for axis in found}) < len(found):
-        raise InputError(f"axes must have different dimensions; got {', '.join(axis.name for axis in found)}")
+        raise InputError(
+            "axes", f"must have different dimensions; got {', '.join(axis.name for axis in found)}"
+        )
     variations = Variations(system, found)
     first = [0] * len(found)
     for k, axis in enumerate(found):
@@ -242,18 +246,19 @@ def checked_variations(system: System, axes: "Mapping[str, Any] | Variations") -
 
 def _axis(name: object, values: object) -> Axis:
     if not isinstance(name, str) or not name:
-        raise InputError(f"axes must have strings as names; got {checks.one_line(name)}")
+        raise InputError("axes", f"must have strings as names; got {checks.one_line(name)}")
     if isinstance(values, Mapping):
         if not re.fullmatch("[a-z][a-z0-9_]*", name) or re.sub("_[0-9]+$", "", name) in (*NUMBERS, *LISTS):
             raise InputError(
-                f"axes must have a name of its own in lower-case letters, such as sample, for parameters "
-                f"that vary together; got {name!r}"
+                "axes",
+                f"must have a name of its own in lower-case letters, such as sample, for parameters "
+                f"that vary together; got {name!r}",
             )
         columns = {key: _column(f"axes.{name}.{key}", column) for key, column in values.items()}
         sizes = {key: column.size for key, column in columns.items()}
         if not columns or len(set(sizes.values())) > 1:
             words = ", ".join(f"{key} {size}" for key, size in sizes.items()) or "none"
-            raise InputError(f"axes.{name} must have as many values of every key; got {words}")
+            raise InputError(f"axes.{name}", f"must have as many values of every key; got {words}")
         return Axis(
             name, tuple(named_number(key, f"axes.{name}") for key in columns), tuple(columns.values())
         )
@@ -266,10 +271,10 @@ def _column(name: str, values: object) -> np.ndarray:
     """Check a list of numbers in any order."""
     column = np.atleast_1d(checks.array(values, name))
     if column.ndim != 1 or column.size == 0 or column.dtype.kind not in "iuf":
-        raise InputError(f"{name} must be a list of numbers; got {checks.one_line(values)}")
+        raise InputError(name, f"must be a list of numbers; got {checks.one_line(values)}")
     wrong = np.flatnonzero(~np.isfinite(column))
     if wrong.size:
-        raise InputError(f"{name}[{wrong[0]}] must be finite; got {column[wrong[0]]}")
+        raise InputError(f"{name}[{wrong[0]}]", f"must be finite; got {column[wrong[0]]}")
     return column.astype(float)
 
 
@@ -289,6 +294,7 @@ def named_number(key: object, where: str) -> Number:
         *(f"contacts[i].{name}" for name in CONTACT_NUMBERS),
     )
     raise InputError(
-        f"{where} must name a number of the system, i counted from 1: {', '.join(valid)}; "
-        f"got {checks.one_line(key)}{checks.nearest(str(key), valid)}"
+        where,
+        f"must name a number of the system, i counted from 1: {', '.join(valid)}; "
+        f"got {checks.one_line(key)}{checks.nearest(str(key), valid)}",
     )

@@ -189,7 +189,7 @@ def compute(
     """Compute the cells of a grid; `request` names quantities to be stored in the results of the cells."""
     threads = checks.threads(threads)
     if progress is not None and not callable(progress):
-        raise InputError(f"progress must be a function of two numbers; got {checks.one_line(progress)}")
+        raise InputError("progress", f"must be a function of two numbers; got {checks.one_line(progress)}")
     mu, r, beta = axes["mu"], axes["r"], axes["beta"]
     cells = Cells(system, r, beta, mu, solver, request)
     out = allocate((mu.size, r.size, beta.size), system.n, cells.kept)

@@ -41,7 +41,7 @@ def _checked_cell(r: object, beta: object, mu: object, scales: Scales) -> tuple[
     beta = checks.number(_ratio(beta, "beta", scales), "beta", least=0.0)
     mu = checks.number(mu, "mu", least=1.0)
     if r == 0.0:
-        raise InputError("r must be > 0: at r = 0 there is no motion in time; got 0")
+        raise InputError("r", "must be > 0: at r = 0 there is no motion in time; got 0")
     return r, beta, mu
 
 

@@ -71,7 +71,7 @@ def borders(system: System, r: Any, beta: Any, mu: Any = 1.0, *, units: Units | 
     for name, given in (("r", r), ("beta", beta)):
         axis = checks.axis(ratios(given, name, KINDS[name], scales), name, least=0.0)
         if axis.size != 2 or axis[0] <= 0.0:
-            raise InputError(f"{name} must be two numbers > 0; got {checks.one_line(given)}")
+            raise InputError(name, f"must be two numbers > 0; got {checks.one_line(given)}")
         ends[name] = axis
     each = checks.axis(mu, "mu", least=1.0)
     system.costs(ends["r"])
@@ -121,8 +121,9 @@ def with_borders(ds: xr.Dataset, system: System, beta: np.ndarray, units: Units 
     inside, positive = r[r >= lowest], beta[beta > 0.0]
     if inside.size < 2 or positive.size < 2:
         raise InputError(
-            f"grid.r must have two values >= {lowest:.3g}, and grid.beta two > 0, for borders between "
-            f"numbers of stops; got {inside.size} and {positive.size}"
+            "grid.r",
+            f"must have two values >= {lowest:.3g}, and grid.beta two > 0, for borders between "
+            f"numbers of stops; got {inside.size} and {positive.size}",
         )
     found = borders(system, inside[[0, -1]], positive[[0, -1]], ds["mu"].values, units=units)
     if not found.sizes["border"]:

@@ -50,7 +50,7 @@ class Ranges(dict[tuple[float, float], T | InputError]):
             if found is None:
                 found = self[low, high] = _found(find)
         if isinstance(found, InputError):
-            raise InputError(str(found))
+            raise found.renamed(found.where)  # a new one: each has a traceback of its own
         return found
 
     def _around(self, low: float, high: float) -> T | None:

@@ -26,7 +26,9 @@ def read_npz(path: Path) -> dict[str, Any]:
         reason = "it is not an .npz file of plain arrays"
     except (AttributeError, TypeError):  # one array, as numpy.save writes it, has no names
         reason = "it is not an .npz file but one array"
-    raise InputError(f"matrices must be an .npz file with arrays M, K and optionally C; got {path}: {reason}")
+    raise InputError(
+        "matrices", f"must be an .npz file with arrays M, K and optionally C; got {path}: {reason}"
+    )
 
 
 def read_mat_arrays(path: Path) -> dict[str, Any]:

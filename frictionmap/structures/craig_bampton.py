@@ -46,13 +46,13 @@ def checked_reduce(given: object, dofs: Dofs) -> Reduce:
     if isinstance(given, Reduce):
         return given
     if not isinstance(given, Mapping) or "modes" not in given:
-        raise InputError(f"reduce must be {{ keep = [...], modes = 16 }}; got {checks.one_line(given)}")
+        raise InputError("reduce", f"must be {{ keep = [...], modes = 16 }}; got {checks.one_line(given)}")
     for key in given:
         if key not in _KEYS:
             raise InputError(f"unknown key of reduce {checks.one_line(key)}; valid: {', '.join(_KEYS)}")
     keep = given.get("keep", ())
     if isinstance(keep, str) or not isinstance(keep, (Sequence, np.ndarray)):
-        raise InputError(f"reduce.keep must be a list of degrees of freedom; got {checks.one_line(keep)}")
+        raise InputError("reduce.keep", f"must be a list of degrees of freedom; got {checks.one_line(keep)}")
     numbers = {dofs.number(one, f"reduce.keep[{index}]") for index, one in enumerate(keep)}
     modes = checks.whole(given["modes"], "reduce.modes", least=0)
     allow = checks.number(given.get("allow", _ALLOWED), "reduce.allow", above=0.0, most=1.0)
@@ -111,7 +111,7 @@ def factor(matrix: Any) -> Any:
         found = None
     # without row exchanges the pivots have the signs of the eigenvalues
     if found is None or not (found.U.diagonal() > 0.0).all():
-        raise InputError("matrices: K must be positive definite; got a singular or indefinite matrix")
+        raise InputError("matrices", ": K must be positive definite; got a singular or indefinite matrix")
     return found
 
 
@@ -155,7 +155,7 @@ def fixed_interface(structure: Structure, kept: Sequence[int], modes: int) -> Fi
     others = np.setdiff1d(np.arange(structure.n), rows)
     most = int(np.count_nonzero(diagonal[others]))
     if modes > most:
-        raise InputError(f"reduce.modes must be at most {most}, as many as there are; got {modes}")
+        raise InputError("reduce.modes", f"must be at most {most}, as many as there are; got {modes}")
     if not others.size:
         return FixedInterface(rows, others, np.empty((0, rows.size)), np.empty((0, 0)))
     inner = stiffness[others][:, others]
@@ -170,7 +170,7 @@ def _refuse_where(structure: Structure, name: str, what: str, wrong: np.ndarray)
     if wrong.any():
         where = structure.dofs.word(structure.dofs.numbers[int(np.argmax(wrong))])
         raise InputError(
-            f"matrices: {name} must be positive definite; got {what} of degree of freedom {where}"
+            "matrices", f": {name} must be positive definite; got {what} of degree of freedom {where}"
         )
 
 

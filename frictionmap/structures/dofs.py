@@ -72,17 +72,18 @@ class Dofs:
             if given not in self._labelled:
                 words = list(self._labelled)
                 raise InputError(
-                    f"{name} must be a number, or a label NODE.DOF of the file such as {words[0]} or "
-                    f"{words[-1]}; got {checks.one_line(given)}{checks.nearest(given, words)}"
+                    name,
+                    f"must be a number, or a label NODE.DOF of the file such as {words[0]} or "
+                    f"{words[-1]}; got {checks.one_line(given)}{checks.nearest(given, words)}",
                 )
             return self._labelled[given]
         if isinstance(given, float) and self.labels is not None:
-            raise InputError(f"{name} must be a whole number, or a label in quotes; got {given}")
+            raise InputError(name, f"must be a whole number, or a label in quotes; got {given}")
         found = checks.whole(given, name, least=1, most=self.numbers[-1])
         if found not in self._rows:
             shown = ", ".join(str(number) for number in self.numbers[:12])
             more = ", ..." if self.n > 12 else ""
-            raise InputError(f"{name} must be one of {shown}{more}; got {found}")
+            raise InputError(name, f"must be one of {shown}{more}; got {found}")
         return found
 
     def word(self, number: int) -> str:

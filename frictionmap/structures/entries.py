@@ -121,8 +121,9 @@ def in_one_order(matrices: dict[str, Matrix]) -> tuple[dict[str, Any], tuple[Lab
     bare = [name for name in matrices if name not in labelled]
     if bare:
         raise InputError(
-            f"matrices: cannot match the rows: {min(labelled)} has labels of nodes, {bare[0]} has none; "
-            f"give all files with labels, or none"
+            "matrices",
+            f": cannot match the rows: {min(labelled)} has labels of nodes, {bare[0]} has none; "
+            f"give all files with labels, or none",
         )
     every = tuple(sorted({label for one in matrices.values() for label in one.labels or ()}))
     return {name: _placed(one, every) for name, one in matrices.items()}, every

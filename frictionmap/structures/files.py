@@ -57,8 +57,9 @@ def read_files(given: object) -> GivenMatrices:
     if isinstance(given, Mapping):
         return _from_mapping(given)
     raise InputError(
-        f"matrices must be the path of an .npz file or a mapping with arrays M, K and optionally C; "
-        f"got {checks.one_line(given)}"
+        "matrices",
+        f"must be the path of an .npz file or a mapping with arrays M, K and optionally C; "
+        f"got {checks.one_line(given)}",
     )
 
 
@@ -66,11 +67,11 @@ def _known_names(names: Iterable[Any]) -> None:
     listed = [name for name in names if name != DOFS]
     for name in listed:
         if name not in NAMES:
-            raise InputError(f"matrices: unknown array {name!r}; valid: {', '.join((*NAMES, DOFS))}")
+            raise InputError("matrices", f": unknown array {name!r}; valid: {', '.join((*NAMES, DOFS))}")
     for name in ("M", "K"):
         if name not in listed:
             raise InputError(
-                f"matrices must have arrays M, K and optionally C; got {', '.join(listed) or 'none'}"
+                "matrices", f"must have arrays M, K and optionally C; got {', '.join(listed) or 'none'}"
             )
 
 
@@ -78,7 +79,7 @@ def _from_path(path: Path) -> GivenMatrices:
     ending = path.suffix.lower()
     if ending == ".mtx" or ending in _BOEING:
         raise InputError(
-            f"matrices must be given one by one for {ending} files, such as {_ONE_EACH}; got {path.name}"
+            "matrices", f"must be given one by one for {ending} files, such as {_ONE_EACH}; got {path.name}"
         )
     if ending in _SEVERAL:
         matrices = _opened(path, _SEVERAL[ending])
@@ -99,7 +100,7 @@ def _from_mapping(given: Mapping[Any, Any]) -> GivenMatrices:
         return GivenMatrices(arrays, given.get(DOFS), None, None, "")
     if len(paths) < len(arrays) or DOFS in given:
         raise InputError(
-            f"matrices must all be files, such as {_ONE_EACH}, or arrays; got a file of {', '.join(paths)}"
+            "matrices", f"must all be files, such as {_ONE_EACH}, or arrays; got a file of {', '.join(paths)}"
         )
     matrices = {name: _one(path, name) for name, path in paths.items()}
     whole, labels = in_one_order(matrices)
@@ -116,13 +117,15 @@ def _one(path: Path, name: str) -> Matrix:
     if ending in _SEVERAL:
         found = _opened(path, _SEVERAL[ending])
         if name not in found:
-            raise InputError(f"matrices: {name} must be in file {path}; got {', '.join(found)}")
+            raise InputError("matrices", f": {name} must be in file {path}; got {', '.join(found)}")
         return found[name]
     if ending in _BOEING:
         return _opened(path, read_harwell_boeing)
     if ending == ".mtx":
         return _opened(path, lambda file: read_market(file) if _is_market(file) else read_abaqus(file))
-    raise InputError(f"matrices: {name} must be a file that ends in {', '.join(_ENDINGS)}; got {path.name!r}")
+    raise InputError(
+        "matrices", f": {name} must be a file that ends in {', '.join(_ENDINGS)}; got {path.name!r}"
+    )
 
 
 def _is_market(path: Path) -> bool:
@@ -135,9 +138,10 @@ def _opened(path: Path, read: Callable[[Path], Any]) -> Any:
     try:
         return read(path)
     except InputError as error:
-        key = "" if str(error).startswith("matrices") else "matrices: "
-        raise InputError(f"{key}{error}") from None
+        raise (error if error.where == "matrices" else InputError("matrices", f": {error}")) from None
     except OSError as error:
-        raise InputError(f"matrices: cannot read {path}: {error.strerror or error}; check the path") from None
+        raise InputError(
+            "matrices", f": cannot read {path}: {error.strerror or error}; check the path"
+        ) from None
     except ValueError as error:  # a null character in the name
-        raise InputError(f"matrices: cannot read {path}: {error}; check the path") from None
+        raise InputError("matrices", f": cannot read {path}: {error}; check the path") from None

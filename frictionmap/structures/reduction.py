@@ -102,8 +102,9 @@ class Reduction:
             else f"{enough} mode{'s' * (enough > 1)} suffice{'s' * (enough == 1)}"
         )
         raise InputError(
-            f"reduce: cannot keep the error below {self.asked.allow:g} in the range of r with "
-            f"{self.asked.modes} modes: {accuracy.describe()}; {advice}"
+            "reduce",
+            f": cannot keep the error below {self.asked.allow:g} in the range of r with "
+            f"{self.asked.modes} modes: {accuracy.describe()}; {advice}",
         )
 
 
@@ -151,8 +152,9 @@ def reduce_structure(
     for number in kept:
         if number in massless:
             raise InputError(
-                f"matrices: cannot keep degree of freedom {structure.dofs.word(number)}: no mass in M; "
-                f"contact, load and reduce.keep need degrees of freedom with mass"
+                "matrices",
+                f": cannot keep degree of freedom {structure.dofs.word(number)}: no mass in M; "
+                f"contact, load and reduce.keep need degrees of freedom with mass",
             )
     whole = _with_sparse(structure)
     fixed: FixedInterface = fixed_interface(whole, whole.dofs.rows(kept), asked.modes)

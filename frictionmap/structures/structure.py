@@ -52,13 +52,13 @@ def read_structure(given: object) -> Structure:
     n = arrays["M"].shape[0]
     for name, array in arrays.items():
         if array.shape[0] != n:
-            raise InputError(f"matrices: {name} must have the shape of M, ({n}, {n}); got {array.shape}")
+            raise InputError("matrices", f": {name} must have the shape of M, ({n}, {n}); got {array.shape}")
     dofs, free = _dofs(found, n), np.arange(n)
     if found.held is not None and found.held.any():
         free = np.flatnonzero(~found.held)
         if not free.size:
             raise InputError(
-                "matrices: cannot use K: boundary conditions hold all degrees of freedom; leave one free"
+                "matrices", ": cannot use K: boundary conditions hold all degrees of freedom; leave one free"
             )
         arrays = {name: one[free][:, free] for name, one in arrays.items()}
     # only now: beside the stiffness of a row that is held any difference would be rounding
@@ -75,7 +75,7 @@ def _dofs(found: GivenMatrices, n: int) -> Dofs:
     )
     if not whole or (np.diff(numbers) <= 0).any() or numbers[0] < 1:
         raise InputError(
-            f"matrices: dofs must be {n} increasing integers >= 1; got {checks.one_line(found.dofs)}"
+            "matrices", f": dofs must be {n} increasing integers >= 1; got {checks.one_line(found.dofs)}"
         )
     return Dofs(tuple(int(number) for number in numbers))
 
@@ -91,18 +91,19 @@ def _square(given: Any, name: str) -> Any:
     array = given if _is_sparse(given) else checks.array(given, f"matrices: {name}")
     if array.dtype.kind not in "iuf":  # neither text, nor complex, nor true and false
         kind = f"numbers of type {array.dtype}" if array.dtype.kind == "c" else f"type {array.dtype}"
-        raise InputError(f"matrices: {name} must be an array of real numbers; got {kind}")
+        raise InputError("matrices", f": {name} must be an array of real numbers; got {kind}")
     if array.ndim != 2 or array.shape[0] != array.shape[1] or array.shape[0] == 0:
-        raise InputError(f"matrices: {name} must be square, (n, n); got shape {array.shape}")
+        raise InputError("matrices", f": {name} must be square, (n, n); got shape {array.shape}")
     result = _as_rows(array) if _is_sparse(given) else array.astype(np.float64)
     numbers = result.data if _is_sparse(given) else result
     if not np.isfinite(numbers).all():
         i, j, value = _first_wrong(result)
-        raise InputError(f"matrices: {name} must be finite; got {value} at [{i}, {j}]")
+        raise InputError("matrices", f": {name} must be finite; got {value} at [{i}, {j}]")
     if not in_range(result, name):
         raise InputError(
-            f"matrices: {name} must have a largest entry of {1.0 / LARGEST:g} to {LARGEST:g}; "
-            f"got {abs(result).max():g}"
+            "matrices",
+            f": {name} must have a largest entry of {1.0 / LARGEST:g} to {LARGEST:g}; "
+            f"got {abs(result).max():g}",
         )
     return result
 
@@ -136,8 +137,9 @@ def _symmetric(array: Any, name: str, free: np.ndarray) -> Any:
     i, j = np.unravel_index(difference.argmax(), array.shape)
     if difference[i, j] > TOLERANCE * abs(array).max():
         raise InputError(
-            f"matrices: {name} must be symmetric; got {float(array[i, j])!r} at [{free[i]}, {free[j]}] and "
-            f"{float(array[j, i])!r} at [{free[j]}, {free[i]}]"
+            "matrices",
+            f": {name} must be symmetric; got {float(array[i, j])!r} at [{free[i]}, {free[j]}] and "
+            f"{float(array[j, i])!r} at [{free[j]}, {free[i]}]",
         )
     whole = 0.5 * (array + array.T)
     return whole.tocsr() if _is_sparse(whole) else whole

@@ -109,8 +109,9 @@ def _refuse_low(r: np.ndarray, omega: np.ndarray, zeta: np.ndarray) -> None:
     small = r[r < least]
     if small.any():  # any but 0
         raise InputError(
-            f"r must be 0, or >= {least:.3g} for this system: below, a period of the load has more than 10^6 "
-            f"periods of the fastest free motion; got {small[small > 0.0][0]:g}"
+            "r",
+            f"must be 0, or >= {least:.3g} for this system: below, a period of the load has more than 10^6 "
+            f"periods of the fastest free motion; got {small[small > 0.0][0]:g}",
         )
 
 

@@ -218,9 +218,9 @@ class ContinuousMotion:
         try:
             tau = np.atleast_1d(np.asarray(tau, dtype=float))
         except (TypeError, ValueError):
-            raise InputError(f"tau must be numbers; got {tau!r}") from None
+            raise InputError("tau", f"must be numbers; got {tau!r}") from None
         if tau.ndim != 1 or not np.isfinite(tau).all():
-            raise InputError(f"tau must be one-dimensional and finite; got {tau!r}")
+            raise InputError("tau", f"must be one-dimensional and finite; got {tau!r}")
         since = np.mod(tau - self.contact_phase, 2.0 * math.pi)
         second = since >= math.pi
         values = self._half(np.where(second, since - math.pi, since), harmonic, compliance, velocity)

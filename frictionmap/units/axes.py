@@ -104,19 +104,20 @@ def _ladder(axis: Mapping[str, Any], name: str, kind: str, scales: Scales) -> La
     one = scales.needed(kind, name, axis)
     start, stop = (given[key].value / one for key in ("start", "stop"))
     if stop < start:
-        raise InputError(f"{name}.stop must be >= start ({axis['start']}); got {axis['stop']!r}")
+        raise InputError(f"{name}.stop", f"must be >= start ({axis['start']}); got {axis['stop']!r}")
     if math.isinf(rounded(stop)) or math.isinf(rounded(start)):
-        raise InputError(f"{name} must be finite; got {checks.one_line(axis)}")
+        raise InputError(name, f"must be finite; got {checks.one_line(axis)}")
     if "num" in axis:
         return _spaced_by_number(start, stop, axis, name)
     if given["step"].value <= 0:
-        raise InputError(f"{name}.step must be > 0; got {axis['step']!r}")
+        raise InputError(f"{name}.step", f"must be > 0; got {axis['step']!r}")
     step = given["step"].value / one
     steps = math.ceil((stop - start) / step)
     if steps >= checks.MOST_CELLS:
         raise InputError(
-            f"{name}.step must leave at most {checks.MOST_CELLS:.0e} values; got {axis['step']!r}, which "
-            f"makes {rounded(Fraction(steps + 1)):.3g}"
+            f"{name}.step",
+            f"must leave at most {checks.MOST_CELLS:.0e} values; got {axis['step']!r}, which "
+            f"makes {rounded(Fraction(steps + 1)):.3g}",
         )
     return Ladder(start, step, stop, steps + 1)
 
@@ -125,7 +126,9 @@ def _spaced_by_number(start: Fraction, stop: Fraction, axis: Mapping[str, Any], 
     """Make a range with a given number of values."""
     num = checks.whole(axis["num"], f"{name}.num", least=1, most=checks.MOST_CELLS)
     if num == 1 and stop > start:
-        raise InputError(f"{name}.num must be >= 2 to hold both {axis['start']} and {axis['stop']}; got 1")
+        raise InputError(
+            f"{name}.num", f"must be >= 2 to hold both {axis['start']} and {axis['stop']}; got 1"
+        )
     return Ladder(start, (stop - start) / max(1, num - 1), stop, num)
 
 

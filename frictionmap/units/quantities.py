@@ -156,8 +156,9 @@ def _refusal(name: str, kind: str, value: object, why: str) -> InputError:
         repr(value) if isinstance(value, str) and len(value) < 80 else checks.one_line(value)
     )  # spaces count
     return InputError(
-        f"{name} must be a number with a unit of {kind} ({valid}), such as '{EXAMPLES[kind]}'; "
-        f"got {got}{why and f': {why}'}"
+        name,
+        f"must be a number with a unit of {kind} ({valid}), such as '{EXAMPLES[kind]}'; "
+        f"got {got}{why and f': {why}'}",
     )
 
 
@@ -179,8 +180,9 @@ def _unit_of_array(values: Any, name: str, kind: str) -> str | None:
     if unit is None:
         valid = ", ".join(units_of(kind))
         raise InputError(
-            f"{name} must have a unit of {kind} ({valid}), or 1 for ratios; got {checks.one_line(said)}: "
-            f"{_meant(str(said), kind)}"
+            name,
+            f"must have a unit of {kind} ({valid}), or 1 for ratios; got {checks.one_line(said)}: "
+            f"{_meant(str(said), kind)}",
         )
     return unit
 

@@ -107,16 +107,16 @@ class Units:
     def __post_init__(self) -> None:
         given = [name for name in UNIT_KINDS if getattr(self, name) is not None]
         if not given:
-            raise InputError(f"units must have at least one of {', '.join(UNIT_KINDS)}; got none")
+            raise InputError("units", f"must have at least one of {', '.join(UNIT_KINDS)}; got none")
         for names in _RIVALS:
             both = [name for name in names if name in given]
             if len(both) > 1:
                 raise InputError(
-                    f"cannot use {both[1]} with {both[0]}: one follows from the other; give one of them"
+                    "cannot use", both[1], f"with {both[0]}: one follows from the other; give one of them"
                 )
         for name, needed, why in _NEEDS:
             if name in given and needed not in given:
-                raise InputError(f"cannot use {name} without {needed}: {why}; give both")
+                raise InputError("cannot use", name, f"without {needed}: {why}; give both")
         for name in given:
             self._check(name)
 
@@ -127,7 +127,7 @@ class Units:
             return
         found = quantity(value, name, UNIT_KINDS[name])
         if found.value <= 0:
-            raise InputError(f"{name} must be > 0; got {checks.one_line(value)}")
+            raise InputError(name, f"must be > 0; got {checks.one_line(value)}")
         object.__setattr__(self, name, found.text)
 
     def value(self, name: str) -> Fraction | None:
@@ -223,8 +223,9 @@ def _check_sizes(scales: Scales, units: Units) -> None:
             size = Decimal(found.numerator) / Decimal(found.denominator)  # it may be beyond doubles
             given = ", ".join(f"{name} {text}" for name, text in units.given.items())
             raise InputError(
-                f"units must make {one} mean {1 / _LARGEST:g} to {_LARGEST:g} {unit}; got {size:.3g} {unit} "
-                f"from {given}"
+                "units",
+                f"must make {one} mean {1 / _LARGEST:g} to {_LARGEST:g} {unit}; got {size:.3g} {unit} "
+                f"from {given}",
             )
 
 
@@ -238,14 +239,15 @@ def _check_system(units: Units, system: System) -> None:
             )
     if units.mass is not None and system.matrices is not None:
         raise InputError(
-            "cannot use units.mass with matrices: only a chain has a first mass; "
-            "use units.stiffness for stiffness_scale"
+            "cannot use",
+            "units.mass",
+            "with matrices: only a chain has a first mass; use units.stiffness for stiffness_scale",
         )
     for name in MODEL_HAS:
         if getattr(units, name) == OF_MODEL and system.matrices is None:
             raise InputError(
-                f"units.{name} must be a number with its unit for a chain, whose numbers are ratios; "
-                f"got 'model'"
+                f"units.{name}",
+                "must be a number with its unit for a chain, whose numbers are ratios; got 'model'",
             )
 
 
@@ -255,8 +257,10 @@ def _check_variations(variations: Variations | None) -> None:
         for number in axis.numbers:
             if number.key in ("frequency_scale", "stiffness_scale"):
                 raise InputError(
-                    f"cannot use units with axes.{axis.name}: {number.key} changes along it, so one unit "
-                    f"cannot hold for all points; remove one of the two"
+                    "cannot use",
+                    "units",
+                    f"with axes.{axis.name}: {number.key} changes along it, so one unit "
+                    f"cannot hold for all points; remove one of the two",
                 )
 
 

@@ -114,7 +114,7 @@ def checked_unit(unit: str, measures: str, name: str) -> str:
     """`unit`, if columns of time, length or frequency may have it."""
     valid = tuple(suffix[1:] for suffix in suffixes(measures))
     if unit not in valid:
-        raise InputError(f"{name} must be one of {', '.join(valid)}; got {checks.one_line(unit)}")
+        raise InputError(name, f"must be one of {', '.join(valid)}; got {checks.one_line(unit)}")
     return unit
 
 

@@ -8,6 +8,7 @@ message is the indented line below it, where three dots stand for any text.  `fo
 import ast
 import contextlib
 import io
+import pickle
 import re
 import shlex
 import shutil
@@ -118,9 +119,9 @@ map good.toml --set solver.start=sliding
 map good.toml --set solver.skip=all
     solver.skip must be one of exact, none; got 'all'
 map good.toml --set solver.outputs=[]
-    solver.outputs must name at least one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, least_slip, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall, release_order; got none
+    solver.outputs must name at least one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, beta_lim_modal, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, least_slip, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall, release_order; got none
 map good.toml --set 'solver.outputs=["regim"]'
-    solver.outputs must be one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, least_slip, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall, release_order; got 'regim' (did you mean regime?)
+    solver.outputs must be one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, beta_lim_modal, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, least_slip, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall, release_order; got 'regim' (did you mean regime?)
 map good.toml --set 'axes.damping_ratio=[0,0.1]'
     axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity; got 'damping_ratio' (did you mean damping_ratios?)
 map good.toml --set 'axes={"mass_ratios[2]"=[1,2]}'
@@ -985,7 +986,39 @@ def templates():
                 and isinstance(node.func, ast.Name)
                 and node.func.id == "InputError"
             ):
-                yield f"{path.relative_to(ROOT)}:{node.lineno}", _template(node.args[0])
+                text = " ".join(map(_template, node.args)).replace(" :", ":")
+                yield f"{path.relative_to(ROOT)}:{node.lineno}", text
+
+
+#: Parts of the package whose callers know an argument by another name, such as system.mu.
+RENAMED = re.compile(
+    r"frictionmap/(model/|structures/|units/|design/|theory/|general/|steady/|checks\.py|stop_counts/dataset)"
+)
+
+
+def test_messages_about_an_argument_carry_its_name():
+    """Else `renamed` cannot name it as the caller does: the message must not begin with the name itself."""
+    for path in sorted((ROOT / "frictionmap").rglob("*.py")):
+        if RENAMED.match(path.relative_to(ROOT).as_posix()):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.Call) and ast.unparse(node.func) == "InputError":
+                    texts = [*map(_template, node.args)]
+                    named = re.match(r"(cannot use )?(\{\}|[\w.\[\]]+)+(:| must) ", texts[0])
+                    assert len(texts) > 1 or not named, f"{path.name}:{node.lineno}: {texts[0]}"
+
+
+def test_errors_are_renamed_and_placed():
+    one = fm.InputError("mu", "must be >= 1; got 0.5")
+    assert (str(one), one.where) == ("mu must be >= 1; got 0.5", "mu")
+    assert str(one.renamed("grid.mu")) == "grid.mu must be >= 1; got 0.5"
+    other = fm.InputError("cannot use", "load", "with waveform: both define the load; omit one")
+    assert str(other.renamed("system.load")) == (
+        "cannot use system.load with waveform: both define the load; omit one"
+    )
+    assert str(fm.InputError("matrices", ": K must be finite; got nan")).startswith("matrices: K must")
+    assert fm.InputError("cannot fit x: too short; add samples").where == ""
+    again = pickle.loads(pickle.dumps(other))
+    assert (str(again), again.where) == (str(other), "load")
 
 
 def test_every_message_in_the_package_has_one_of_the_forms():

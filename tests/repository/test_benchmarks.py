@@ -120,12 +120,13 @@ def test_there_is_no_timing_outside_the_quoted_results():
         assert not timing, f"{number} {unit}"
 
 
-@pytest.mark.parametrize("name", results_page.QUOTED)
-def test_committed_results_are_complete(name):
-    content = json.loads((RESULTS / f"{name}.json").read_text())
-    assert {"processor", "system", "python", "versions"} <= set(content["machine"])
-    assert spreads(content) or name in UNTIMED
-    assert (RESULTS / f"{name}.png").is_file() == (name not in WITHOUT_FIGURE)
+def test_committed_results_are_complete():
+    assert len(results_page.QUOTED) > 10
+    for name in results_page.QUOTED:
+        content = json.loads((RESULTS / f"{name}.json").read_text())
+        assert {"processor", "system", "python", "versions"} <= set(content["machine"]), name
+        assert spreads(content) or name in UNTIMED, name
+        assert (RESULTS / f"{name}.png").is_file() == (name not in WITHOUT_FIGURE), name
 
 
 def test_committed_results_are_of_full_runs():

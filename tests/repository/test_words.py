@@ -251,19 +251,7 @@ def fragments(paths):
                 yield Finding(place, text.splitlines()[0], "a verb or a noun phrase")
 
 
-def package_parts():
-    """Folders and modules right below frictionmap/."""
-    root = ROOT / "frictionmap"
-    return sorted(
-        path.name
-        for path in root.iterdir()
-        if path.suffix == ".py" or (path.is_dir() and (path / "__init__.py").exists())
-    )
-
-
-def files_of(part):
-    path = ROOT / "frictionmap" / part
-    return sorted(path.rglob("*.py")) if path.is_dir() else [path]
+PACKAGE = sorted((ROOT / "frictionmap").rglob("*.py"))
 
 
 def made(path):
@@ -282,9 +270,9 @@ PAGES = [
 ]
 
 
-@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.name)
-def test_pages(path):
-    assert not report(findings(prose(path)))
+def test_pages():
+    assert len(PAGES) > 20
+    assert not report(findings(text for path in PAGES for text in prose(path)))
 
 
 def test_sources_of_the_manual():
@@ -314,23 +302,19 @@ def test_benchmarks():
     assert not report([*findings(python_texts(paths)), *fragments(paths)])
 
 
-@pytest.mark.parametrize("part", package_parts())
-def test_docstrings_and_messages(part):
-    found = [*findings(python_texts(files_of(part))), *fragments(files_of(part))]
-    assert not report(found)
+def test_docstrings_and_messages():
+    assert not report([*findings(python_texts(PACKAGE)), *fragments(PACKAGE)])
 
 
-@pytest.mark.parametrize("part", package_parts())
-def test_further_texts(part):
+def test_further_texts():
     """Labels of variables, comments in files, lines that are printed; comments of the code."""
-    for path in checked(files_of(part)):
+    for path in checked(PACKAGE):
         tree = ast.parse(path.read_text(encoding="utf-8"))
         assert not report(findings([*texts_within(tree, path.relative_to(ROOT)), *comments(path)]))
 
 
-@pytest.mark.parametrize("part", package_parts())
-def test_names_of_functions(part):
-    assert not report(names_of_functions(functions(checked(files_of(part)))))
+def test_names_of_functions():
+    assert not report(names_of_functions(functions(checked(PACKAGE))))
 
 
 def test_citation():
@@ -340,9 +324,9 @@ def test_citation():
 PAGE = sorted(path for path in (ROOT / "frictionmap").rglob("*.*") if path.suffix in (".js", ".html", ".css"))
 
 
-@pytest.mark.parametrize("path", PAGE, ids=lambda path: path.name)
-def test_page(path):
-    assert not report(findings(page_texts(path)))
+def test_page():
+    assert len(PAGE) > 10
+    assert not report(findings(text for path in PAGE for text in page_texts(path)))
 
 
 def test_names_of_tests():

@@ -1,5 +1,7 @@
 """Compiled kernels on disk: found again, never believed when damaged, kept wherever there is a place."""
 
+import ast
+import functools
 import os
 import pickle
 import shutil
@@ -15,10 +17,13 @@ import pytest
 from fuzz.machine import prepared
 
 import frictionmap as fm
-from frictionmap._kernels.compiler import entry, folders, notices
+from frictionmap._kernels.compiler import entry, folders, notices, sources
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
 POSIX = pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
+
+
+KERNELS = sources.SOURCES
 
 
 def twice(x):
@@ -35,9 +40,11 @@ def user_cache(monkeypatch, path):
 
 def forget():
     """As in a new process."""
-    folders.folders.cache_clear()
-    folders.state.cache_clear()
-    notices.warn_once.cache_clear()
+    for known in (
+        folders.folders, folders.versions, folders.state, folders.forget, notices.warn_once,
+        sources._source, sources.digest_of_all, sources.digest_for,
+    ):  # fmt: skip
+        known.cache_clear()
 
 
 @pytest.fixture(autouse=True)
@@ -291,43 +298,265 @@ def test_the_cache_of_the_user_follows_the_environment(monkeypatch, tmp_path):
     assert folders._user_cache() == tmp_path / ".cache" / "frictionmap"
 
 
-# States
+# What a kernel depends on
 
 
-def test_another_state_of_the_kernels_has_another_folder(place, tmp_path, monkeypatch):
-    sources = tmp_path / "package" / "_kernels"
-    sources.mkdir(parents=True)
-    (sources / "one.py").write_text("a = 1")
-    (sources.parent / "regimes.py").write_text("")
-    monkeypatch.setattr(folders, "_SOURCES", sources)
+@pytest.fixture
+def tree(tmp_path, monkeypatch):
+    """A copy of the sources of all kernels that the package takes for its own."""
+    package = Path(fm.__file__).parent
+    copied = tmp_path / "package"
+    shutil.copytree(package / "_kernels", copied / "_kernels", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(package / "regimes.py", copied)
+    monkeypatch.setattr(sources, "SOURCES", copied / "_kernels")
+    forget()
+    return copied / "_kernels"
+
+
+def modules(tree):
+    """Every module of kernels with the digest of its sources."""
+    forget()
+    names = [name_of(path, tree) for path in tree.rglob("*.py") if path.parent.name != "compiler"]
+    return {name: sources.digest_for(f"frictionmap._kernels.{name}") for name in names}
+
+
+@functools.cache
+def importing():
+    """The modules of kernels that each module imports, by Python's own reading of the files."""
+    found = {}
+    for path in KERNELS.rglob("*.py"):
+        found[path] = set()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.level:
+                place = path.parents[node.level - 1].joinpath(*(node.module or "").split("."))
+                named = [place / f"{alias.name}.py" for alias in node.names]
+                found[path] |= {file for file in (place.with_suffix(".py"), *named) if file.is_file()}
+            elif isinstance(node, ast.Import | ast.ImportFrom):
+                assert "frictionmap" not in ast.unparse(node)
+    return {path: {file for file in files if file.is_relative_to(KERNELS)} for path, files in found.items()}
+
+
+def name_of(path, folder=KERNELS):
+    return ".".join(path.relative_to(folder).with_suffix("").parts)
+
+
+def test_sources_are_those_that_python_would_import():
+    assert sum(map(len, importing().values())) > 300
+    for path, files in importing().items():
+        assert files <= sources._source(path).imports <= {*files, *KERNELS.rglob("__init__.py")}, path
+
+
+def test_folders_of_kernels_have_no_code_of_their_own():
+    """An import from a folder is an import of its modules."""
+    for path in KERNELS.rglob("__init__.py"):
+        body = ast.parse(path.read_text(encoding="utf-8")).body
+        assert path.parent.name == "compiler" or [type(node) for node in body] == [ast.Expr], path
+
+
+@pytest.mark.parametrize(
+    "edited", ["closed_form", "engine.fill", "engine.motion", "general.events", "structure.newton", "logs"]
+)
+def test_an_edit_concerns_what_reaches_the_file_and_nothing_else(tree, edited):
+    before = modules(tree)
+    path = tree.joinpath(*edited.split(".")).with_suffix(".py")
+    path.write_text(path.read_text() + "\n")
+    after = modules(tree)
+    reaching, more = set(), {edited}
+    while more:
+        reaching |= more
+        more = {name_of(file) for file, files in importing().items() if reaching & set(map(name_of, files))}
+        more -= reaching
+    assert {name for name in before if after[name] != before[name]} == reaching
+    assert len(reaching) < len(before)
+
+
+@pytest.mark.parametrize("edited", ["../regimes", "compiler/linking"])
+def test_codes_and_compiler_concern_every_kernel(tree, edited):
+    before = modules(tree)
+    path = tree / f"{edited}.py"
+    path.write_text(path.read_text() + "\n")
+    after = modules(tree)
+    assert all(after[name] != before[name] for name in before)
+
+
+#: Modules of kernels: `outer` reaches the other two, `apart` neither.  `reads` gets its argument from
+#: a file that it does not import.
+SMALL = {
+    "numbers": "FACTOR = 2.0\n",
+    "inner": """
+from .compiler import kernel
+from .numbers import FACTOR
+
+@kernel
+def times(x):
+    return FACTOR * x
+""",
+    "outer": """
+from .compiler import entry
+from .inner import (
+    times,
+)
+
+@entry
+def shifted(x):
+    return times(x) + 1.0
+""",
+    "apart": """
+from .compiler import entry, kernel
+
+@kernel
+def halved(x):
+    return 0.5 * x
+
+@entry
+def quartered(x):
+    return halved(halved(x))
+""",
+    "pairs": """
+from typing import NamedTuple
+
+class Pair(NamedTuple):
+    first: float
+    second: float
+""",
+    "reads": """
+from .compiler import entry
+
+@entry
+def first_of(pair):
+    return pair.first
+""",
+}
+
+
+class Copied:
+    """A copy of the package with some kernels of its own."""
+
+    def __init__(self, site):
+        self.kernels = site / "frictionmap" / "_kernels"
+        self.place = site / "kernels"
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(Path(fm.__file__).parent, site / "frictionmap", ignore=ignored)
+        for name, text in SMALL.items():
+            (self.kernels / f"{name}.py").write_text(text)
+
+    def edit(self, name, old, new):
+        text = (self.kernels / f"{name}.py").read_text()
+        assert old in text
+        (self.kernels / f"{name}.py").write_text(text.replace(old, new))
+
+    def ask(self):
+        """Answers of a new process, and the names of the kernels that it has compiled."""
+        code = (
+            "from frictionmap._kernels import apart, outer, pairs, reads;"
+            "pair = pairs.Pair(second=5.0, first=7.0);"
+            "print(outer.shifted(3.0), apart.quartered(3.0), reads.first_of(pair))"
+        )
+        before = set(self.place.rglob("*.nbc"))
+        environment = {"PYTHONPATH": str(self.kernels.parent.parent), "NUMBA_CACHE_DIR": str(self.place)}
+        done = subprocess.run(
+            [sys.executable, "-B", "-c", code],
+            env=os.environ | environment, cwd=self.place.parent, capture_output=True, text=True, timeout=600,
+        )  # fmt: skip
+        assert (done.returncode, done.stderr) == (0, "")
+        new = set(self.place.rglob("*.nbc")) - before
+        return [float(x) for x in done.stdout.split()], {
+            file.name.rpartition("-")[0].removeprefix("frictionmap._kernels.") for file in new
+        }
+
+
+def test_an_edit_compiles_what_depends_on_it_and_loads_the_rest(tmp_path):
+    """Callee, caller, constant and the fields of an argument are edited in turn, and then all is undone."""
+    copied = Copied(tmp_path)
+    all_kernels = {"inner.times", "outer.shifted", "apart.halved", "apart.quartered", "reads.first_of"}
+    assert copied.ask() == ([7.0, 0.75, 7.0], all_kernels)
+    assert copied.ask() == ([7.0, 0.75, 7.0], set())
+    copied.edit("inner", "FACTOR * x", "FACTOR * x * x")
+    assert copied.ask() == ([19.0, 0.75, 7.0], {"inner.times", "outer.shifted"})
+    copied.edit("outer", "1.0", "2.0")
+    assert copied.ask() == ([20.0, 0.75, 7.0], {"outer.shifted"})
+    copied.edit("numbers", "2.0", "3.0")
+    assert copied.ask() == ([29.0, 0.75, 7.0], {"inner.times", "outer.shifted"})
+    copied.edit("pairs", "    first: float\n    second: float\n", "    second: float\n    first: float\n")
+    assert copied.ask() == ([29.0, 0.75, 7.0], {"reads.first_of"})
+    for name, text in SMALL.items():
+        (copied.kernels / f"{name}.py").write_text(text)
+    assert copied.ask() == ([7.0, 0.75, 7.0], set())
+
+
+def test_a_function_from_elsewhere_depends_on_its_own_file_and_on_all_kernels(tree, tmp_path, monkeypatch):
+    own = tmp_path / "own.py"
+    own.write_text("a = 1")
+    monkeypatch.setattr(sys.modules[__name__], "__file__", str(own))
     assert [hits(), hits()] == [0, 1]
-    (sources / "one.py").write_text("a = 2")  # called by the kernel, perhaps
+    for path in (own, tree / "engine" / "fill.py", tree / "logs.py"):
+        path.write_text(path.read_text() + "\n")
+        assert [hits(), hits()] == [0, 1]
+
+
+def test_another_setting_of_numba_has_another_folder(place, monkeypatch):
     assert [hits(), hits()] == [0, 1]
     monkeypatch.setenv("NUMBA_BOUNDSCHECK", "1")
     assert [hits(), hits()] == [0, 1]
     monkeypatch.setenv("NUMBA_NUM_THREADS", "1")
     assert hits() == 1
-    assert len(list(place.iterdir())) == 3
+    assert len(list(place.iterdir())) == 2
 
 
-def test_states_long_past_go(place):
-    old, recent, other = (place / f"kernels-{16 * letter}" for letter in "abc")
-    for path in (old, recent, other):
+def test_plain_numba_has_a_folder_for_each_state_of_the_sources(tree):
+    before = folders.state()
+    forget()
+    assert folders.state() == before != folders.versions()
+    (tree / "logs.py").write_text("")
+    forget()
+    assert folders.state() != before
+
+
+# What is no longer used
+
+LONG_AGO = time.time() - 100 * 86400
+
+
+def test_kernels_not_used_for_long_go(place):
+    old, recent, other, in_use = (place / f"kernels-{16 * letter}" for letter in "abcd")
+    for path in (old, recent, other, in_use):
         path.mkdir(parents=True)
         (path / "new-half").write_text("")
         (path / "kernel.nbc").write_text("")
+    (in_use / "unused.nbc").write_text("")
     (other / "thesis.tex").write_text("all of it")
     (old / "engine_0").mkdir()  # of plain numba
     for ending in ("nbi", "1.nbc"):
         (old / "engine_0" / f"fill.{ending}").write_text("")
-    past = time.time() - 100 * 86400
-    for path in (old, other):
-        os.utime(path, (past, past))
-    os.utime(recent / "new-half", (past, past))
+    for path in (
+        old / "kernel.nbc", other / "kernel.nbc", in_use / "unused.nbc",
+        *place.glob("*/new-half"), old, other, in_use,
+    ):  # fmt: skip
+        os.utime(path, (LONG_AGO, LONG_AGO))
     hits()
     assert not old.exists()
     assert [path.name for path in recent.iterdir()] == ["kernel.nbc"]
+    assert [path.name for path in in_use.iterdir()] == ["kernel.nbc"]
     assert [path.name for path in other.iterdir()] == ["thesis.tex"]
+
+
+def test_kernels_of_former_sources_go_when_new_ones_are_compiled(place):
+    """They lie in the same folder, which is there already."""
+    hits()
+    former = only_file(place).with_name("former.nbc")
+    former.write_text("")
+    os.utime(former, (LONG_AGO, LONG_AGO))
+    hits()
+    assert former.exists()
+    hits(thrice)
+    assert not former.exists()
+
+
+def test_a_kernel_that_is_used_is_not_old(place):
+    hits()
+    file = only_file(place)
+    os.utime(file, (LONG_AGO, LONG_AGO))
+    assert [hits(), hits(thrice), hits()] == [1, 0, 1]
 
 
 # For real

@@ -7,6 +7,7 @@ from `packed`.
 module          what is in it
 ==============  =====================================================================================
 notices         warnings given once; listeners called before a kernel is compiled
+sources         the source files that decide what a kernel compiles to
 folders         the folders that compiled kernels are kept in
 private_names   the private names of numba and llvmlite that `fast` needs; looked up first
 mode            fast or plain compiler: which one this process uses, and the variable that chooses it
@@ -14,11 +15,11 @@ interpreted     kernels as Python functions, with NUMBA_DISABLE_JIT
 plain           the fall-back: `numba.njit(cache=True)`, public parts of numba only
 class_dispatch  (fast) functions whose body is chosen by the class of an argument
 linking         (fast) libraries of compiled kernels, linked by name or inlined
-cache           (fast) compiled kernels on disk, with a digest
+packed          named tuples that kernels pass on by their address
+cache           (fast) compiled kernels on disk, each with a key and a digest
 fast            the default: each kernel is compiled once, called by name, kept on disk
 decorators      the four decorators; chooses one of the three compilers above
 vectors         vectors of eight numbers that kernels compute with at once
-packed          named tuples that kernels pass on by their address
 ==============  =====================================================================================
 
 docs/compiler.md lists the private names, why each is needed, and what happens if one is missing.

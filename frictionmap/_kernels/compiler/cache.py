@@ -2,8 +2,9 @@
 
 numba's own cache does not check its files for damage, needs a folder that can be written to, and does not
 notice that a kernel has changed which another one calls.  Here every file holds a digest of its content and
-a key; a file whose digest or key differs counts as missing.  If no folder can be written to, every run
-compiles.
+a key; a file whose digest or key differs counts as missing.  The key names all that decides what the kernel
+compiles to, so that an edit compiles again what depends on the edited file (`sources`), and nothing else.
+If no folder can be written to, every run compiles.
 """
 
 import contextlib
@@ -15,14 +16,17 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from numba import types
 from numba.core import sigutils
 from numba.core.compiler import CompileResult, compile_result
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
-from .folders import ENDING, UNDER_WAY, folders, state, warn_of_place
+from .folders import ENDING, UNDER_WAY, folders, forget, mark, versions, warn_of_place
 from .linking import Code, KernelLibrary, rebuilt
 from .notices import announce, warn_once
+from .packed import Packed
+from .sources import digest_for
 
 #: Bytes of the digest (SHA-256) at the beginning of a file.
 _DIGEST = 32
@@ -96,6 +100,7 @@ def _find(name: str, key: tuple) -> Any:
             damaged = folder
             continue
         if data is not None:
+            mark(folder / name)
             return data
     if damaged is not None:
         warn_once(f"the compiled kernels in {damaged} are damaged; they are compiled again")
@@ -146,6 +151,22 @@ def _compile_result(target_context: Any, library: KernelLibrary, data: _Stored) 
     )
 
 
+def _described(kind: Any) -> object:
+    """Return what distinguishes the type of an argument.
+
+    numba's names of named tuples leave out the fields, whose order a kernel has compiled in: the class of an
+    argument need not come from a file that the kernel depends on.
+    """
+    if isinstance(kind, Packed):
+        return "packed", _described(kind.group)
+    if isinstance(kind, types.BaseNamedTuple):
+        group = kind.instance_class
+        return f"{group.__module__}.{group.__qualname__}", kind.fields, *map(_described, kind)
+    if isinstance(kind, types.BaseTuple):
+        return (*map(_described, kind),)
+    return str(kind)
+
+
 class KernelCache:
     """The cache of one function, called by its dispatcher.
 
@@ -153,6 +174,7 @@ class KernelCache:
     """
 
     def __init__(self, function: Callable, kind: str = "") -> None:
+        self._module = function.__module__
         self._name = f"{function.__module__}.{function.__qualname__}{kind}"
 
     @property
@@ -183,9 +205,10 @@ class KernelCache:
         _libraries[name] = result.library
         result.library.place = name, key
         if not folders():
-            warn_of_place()
+            warn_of_place(())
             return
         folder = folders()[-1]
+        forget(folder.parent)
         try:
             _write(folder / name, key, _to_store(result))
         except OSError as error:
@@ -193,12 +216,13 @@ class KernelCache:
                 f"cannot keep compiled kernels in {folder}: {error.strerror}; every run compiles them again"
             )
         else:
-            warn_of_place()
+            warn_of_place(folders())
 
     def _key(self, signature: object, codegen: Any) -> tuple[tuple, str]:
         """Return the key of a compiled kernel, and the name of its file."""
-        types, _ = sigutils.normalize_signature(signature)
-        key = (state(), self._name, str(types), codegen.magic_tuple())
+        given, _ = sigutils.normalize_signature(signature)
+        sources = versions(), digest_for(self._module)
+        key = (*sources, self._name, *map(_described, given)), codegen.magic_tuple()
         return key, f"{self._name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}{ENDING}"
 
     def enable(self) -> None:

@@ -1,4 +1,7 @@
-"""Folders that compiled kernels are kept in: one for each state of the source files of all kernels.
+"""Folders that compiled kernels are kept in: one for each combination of the versions that matter.
+
+Each kernel in it has a key of its own (`cache`).  Plain numba has no such keys, and gets a folder for each
+state of the source files of all kernels.
 
 The folder lies in the package or in NUMBA_CACHE_DIR; if that cannot be written to, in the user's cache; if
 that cannot be written to either, in a private folder for temporary files.
@@ -6,48 +9,59 @@ that cannot be written to either, in a private folder for temporary files.
 
 import contextlib
 import functools
+import hashlib
+import math
 import os
 import stat
 import sys
 import tempfile
 import time
+from collections.abc import Iterable
 from pathlib import Path
 
+import llvmlite
 import numba
 import numpy as np
 
 from ...version import digest_of
 from .notices import warn_once
+from .sources import SOURCES, digest_of_all
 
 #: Endings of the files of kernels (those of plain numba have two), beginning of files being written.
 ENDING = ".nbc"
 _ENDINGS = (ENDING, ".nbi")
 UNDER_WAY = "new-"
 
-#: `frictionmap/_kernels`
-_SOURCES = Path(__file__).parent.parent
 _FOLDER = "kernels-"
 
-#: Age (s) after which folders of other states, and files of interrupted runs, are removed.
-_OLD_STATE = 30 * 86400.0
-_OLD_FILE = 3600.0
+#: Time (s) after which kernels that nobody has used, and files of interrupted runs, are removed, and after
+#: which a kernel is marked as used again: in far less than the first, and hardly ever.
+_UNUSED = 30 * 86400.0
+_INTERRUPTED = 3600.0
+_MARK = 86400.0
 
 #: Settings of numba that do not change the code it generates.
 _NO_MATTER = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS", "NUMBA_DISABLE_JIT")
 
 
 @functools.cache
-def state() -> str:
-    """Return a digest of all that decides what kernels compile to, except the processor."""
-    digest = digest_of((*sorted(_SOURCES.rglob("*.py")), _SOURCES.parent / "regimes.py"))
+def versions() -> str:
+    """Return a digest of all that decides what kernels compile to, except their sources and the processor."""
+    digest = digest_of(())
     settings = sorted(
         (name, value)
         for name, value in os.environ.items()
         if name.startswith("NUMBA_") and name not in _NO_MATTER
     )
-    versions = (numba.__version__, np.__version__, sys.version)
-    digest.update(repr((versions, settings)).encode(errors="surrogateescape"))
+    used = (numba.__version__, llvmlite.__version__, np.__version__, sys.version)
+    digest.update(repr((used, settings)).encode(errors="surrogateescape"))
     return digest.hexdigest()[:16]
+
+
+@functools.cache
+def state() -> str:
+    """Return a digest of versions and of the sources of all kernels."""
+    return hashlib.sha256((versions() + digest_of_all()).encode()).hexdigest()[:16]
 
 
 def _user_cache() -> Path:
@@ -87,7 +101,7 @@ def places() -> list[Path]:
     given = numba.config.CACHE_DIR
     user = _user_cache()
     temporary = _temporary_place()
-    found = [Path(given) if given else _SOURCES / "__pycache__"]
+    found = [Path(given) if given else SOURCES / "__pycache__"]
     if user.is_absolute():  # not if there is no home directory
         found.append(user)
     return [*found, temporary] if temporary is not None else found
@@ -102,48 +116,66 @@ def _can_be_written(folder: Path) -> bool:
 
 
 @functools.cache
-def folders() -> tuple[Path, ...]:
-    """Return the folders to look for kernels in: read-only ones, then one that can be written to, if any."""
+def folders(digest: str = "") -> tuple[Path, ...]:
+    """Return the folders to look for kernels in: read-only ones, then one that can be written to, if any.
+
+    digest : of which their name is made; without it, `versions()`
+    """
     found = []
     temporary = _temporary_place()
     for place in places():
         if place == temporary and not _private(place):
             continue
-        folder = place / f"{_FOLDER}{state()}"
+        folder = place / f"{_FOLDER}{digest or versions()}"
         known = os.path.isdir(folder)
         writable = _can_be_written(folder)
         if writable or known:
             found.append(folder)
         if writable:
             if not known:
-                _forget(place)
+                forget(place)
             break
     return tuple(found)
 
 
-def _forget(place: Path) -> None:
-    """Remove files of old states and of interrupted runs; other files stay, with their folders."""
+def mark(file: Path) -> None:
+    """Mark a kernel as used, if it can be."""
+    if _age(file, time.time()) > _MARK:
+        with contextlib.suppress(OSError):
+            os.utime(file)
+
+
+@functools.cache
+def forget(place: Path) -> None:
+    """Remove, once per process, kernels not used for long, files of interrupted runs, and folders left empty.
+
+    Other files stay, with their folders.
+    """
     now = time.time()
     for folder in place.glob(_FOLDER + 16 * "[0-9a-f]"):
-        past = _age(folder, now) > _OLD_STATE
-        for file in folder.glob(f"{UNDER_WAY}*"):
-            if past or _age(file, now) > _OLD_FILE:
-                with contextlib.suppress(OSError):
-                    file.unlink()
+        past = _age(folder, now) > _UNUSED
+        _remove(folder.glob(f"{UNDER_WAY}*"), now - _INTERRUPTED)
+        _remove(folder.glob(f"*{ENDING}"), now - _UNUSED)
         if past:
-            _remove_state(folder)
+            _remove_folder(folder)
 
 
-def _remove_state(folder: Path) -> None:
-    """Remove compiled kernels, also those in the folders of plain numba, and folders left empty."""
+def _remove_folder(folder: Path) -> None:
+    """Remove a folder without kernels; those of plain numba, in folders of their own, go with it."""
     inner = [path for path in folder.glob("*") if path.is_dir() and not path.is_symlink()]
+    for path in inner:
+        _remove((file for file in path.glob("*") if file.suffix in _ENDINGS), before=math.inf)
     for path in (*inner, folder):
-        for file in path.glob("*"):
-            if file.suffix in _ENDINGS:
-                with contextlib.suppress(OSError):
-                    file.unlink()
         with contextlib.suppress(OSError):
             path.rmdir()
+
+
+def _remove(files: Iterable[Path], before: float) -> None:
+    """Remove files that were last used before a time."""
+    for file in files:
+        with contextlib.suppress(OSError):
+            if file.stat().st_mtime < before:
+                file.unlink()
 
 
 def _age(path: Path, now: float) -> float:
@@ -154,15 +186,18 @@ def _age(path: Path, now: float) -> float:
         return 0.0
 
 
-def warn_of_place() -> None:
-    """Report, once, that compiled kernels are kept elsewhere than in the preferred place, or nowhere."""
+def warn_of_place(found: tuple[Path, ...]) -> None:
+    """Report, once, that compiled kernels are kept elsewhere than in the preferred place, or nowhere.
+
+    found : the folders for them
+    """
     first = places()[0]
-    if not folders():
+    if not found:
         where = ", ".join(map(str, places()))
         warn_once(
             f"cannot keep compiled kernels: none of {where} can be written to; every run compiles them again"
         )
-    elif (used := folders()[-1].parent) != first:
+    elif (used := found[-1].parent) != first:
         warn_once(
             f"cannot keep compiled kernels in {first}: it cannot be written to; they are kept in {used}"
         )

@@ -39,7 +39,7 @@ def packed(group: _Group) -> _Group:
     return group
 
 
-class _Packed(types.Type):
+class Packed(types.Type):
     def __init__(self, group: types.BaseNamedTuple) -> None:
         self.group = group
         super().__init__(name=f"packed({group.name})")
@@ -54,18 +54,18 @@ class _Packed(types.Type):
         return self.group.instance_class  # type: ignore[no-any-return]
 
 
-@register_model(_Packed)
+@register_model(Packed)
 class _Address(models.PrimitiveModel):
-    def __init__(self, manager: Any, kind: _Packed) -> None:
+    def __init__(self, manager: Any, kind: Packed) -> None:
         super().__init__(manager, kind, manager[kind.group].get_data_type().as_pointer())
 
 
 @type_callable(packed)
 def _type_of_packed(_: Any) -> Any:
     def typed(group: Any) -> Any:
-        if isinstance(group, _Packed):
+        if isinstance(group, Packed):
             return group
-        return _Packed(group) if isinstance(group, types.BaseNamedTuple) else None
+        return Packed(group) if isinstance(group, types.BaseNamedTuple) else None
 
     return typed
 
@@ -83,25 +83,25 @@ def _write_packed(context: Any, builder: ir.IRBuilder, signature: Any, arguments
     return builder.asm(kind, "", "=r,0,~{memory}", [memory], side_effect=True)
 
 
-@lower_builtin(packed, _Packed)
+@lower_builtin(packed, Packed)
 def _keep_packed(context: Any, builder: ir.IRBuilder, signature: Any, arguments: tuple) -> ir.Value:
     return arguments[0]
 
 
 @infer_getattr
 class _Attributes(AttributeTemplate):
-    key = _Packed
+    key = Packed
 
-    def generic_resolve(self, packed: _Packed, name: str) -> Any:
+    def generic_resolve(self, packed: Packed, name: str) -> Any:
         if name not in packed.group.fields:
             return None
         kind = packed.group[packed.group.fields.index(name)]
-        return _Packed(kind) if isinstance(kind, types.BaseNamedTuple) else kind
+        return Packed(kind) if isinstance(kind, types.BaseNamedTuple) else kind
 
 
-@lower_getattr_generic(_Packed)
+@lower_getattr_generic(Packed)
 def _write_attribute(
-    context: Any, builder: ir.IRBuilder, kind: _Packed, address: ir.Value, name: str
+    context: Any, builder: ir.IRBuilder, kind: Packed, address: ir.Value, name: str
 ) -> ir.Value:
     index = kind.group.fields.index(name)
     member = kind.group[index]

@@ -14,7 +14,7 @@ from typing import Any
 from numba import config, njit
 from numba.extending import overload
 
-from .folders import folders, warn_of_place
+from .folders import folders, state, warn_of_place
 from .notices import announce, warn_once
 
 #: Kernels never raise (`error_model="numpy"`), never re-order arithmetic (no fast-math), and release the
@@ -46,9 +46,9 @@ def entry(function: Callable, *, keep: bool = True) -> Any:
 
     keep : keep the compiled function on disk, if a folder can be written to
     """
-    if keep and folders():
+    if keep and folders(state()):
         try:
-            with _numba_folder(folders()[-1]):
+            with _numba_folder(folders(state())[-1]):
                 return njit(cache=True, **_RULES)(function)
         except Exception as error:  # numba finds no source file or no folder
             warn_once(f"compiled kernels cannot be kept ({error}): every run compiles them again")
@@ -104,7 +104,7 @@ def _announcer(base: type) -> Any:
     class Announcer(base):
         def on_start(self, event: Any) -> None:
             if event.data["dispatcher"].py_func.__module__.startswith(_PACKAGE):
-                warn_of_place()
+                warn_of_place(folders(state()))
                 announce()
 
         def on_end(self, event: Any) -> None:

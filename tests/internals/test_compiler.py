@@ -46,6 +46,15 @@ def run(*arguments, place, directory=None, asked="", **environment):
     return done.stdout, done.stderr
 
 
+def is_tested():
+    try:
+        mode.check_version()
+    except mode.UntestedNumba:
+        return False
+    return True
+
+
+@pytest.mark.skipif(not is_tested(), reason="a new numba: the weekly job tests it")
 def test_this_numba_has_all_that_the_fast_compiler_needs():
     assert decorators.compiler_in_use() == "fast"
 
@@ -243,6 +252,23 @@ def test_the_environment_chooses_plain_numba(tmp_path):
         out, err = run("-c", f"{count} {CALL} {end}", place=tmp_path, FRICTIONMAP_COMPILER="plain")
         assert err == ""
     assert out == f"{example_kernels.ANSWERS} plain 0\n"
+
+
+@pytest.mark.parametrize("version", ["0.59.1", "0.99.0rc1", "1.0.0", "0.6.0"])
+def test_a_numba_that_was_not_tested_compiles_plainly_unless_asked(tmp_path, version):
+    other = f"import numba; numba.__version__ = {version!r}; {CALL} print(c())"
+    out, err = run("-c", other, place=tmp_path, FRICTIONMAP_COMPILER="")
+    assert out == "plain\n"
+    assert err.startswith(
+        f"frictionmap: cannot use the fast kernel compiler with numba {version} (UntestedNumba: tested are "
+        f"{mode.TESTED[0]} to {mode.TESTED[-1]}; FRICTIONMAP_COMPILER=fast uses it nevertheless); plain numba"
+    )
+    assert run("-c", other, place=tmp_path, FRICTIONMAP_COMPILER="fast") == ("fast\n", "")
+
+
+def test_the_oldest_numba_that_may_be_installed_was_tested():
+    versions = dict(re.findall(r'"(numba)>=([\d.]+)"', (TESTS.parent / "pyproject.toml").read_text()))
+    assert versions["numba"] == mode.TESTED[0]
 
 
 def test_an_unknown_compiler_is_refused(monkeypatch):

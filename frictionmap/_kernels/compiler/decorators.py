@@ -13,7 +13,7 @@ from types import ModuleType
 from numba import config
 
 from . import interpreted, plain
-from .mode import mode, requested, warn_of_plain
+from .mode import check_version, mode, requested, warn_of_plain
 
 
 def _example() -> None:
@@ -26,6 +26,7 @@ def _compiler() -> ModuleType:
         return interpreted
     if requested() == "fast":
         try:
+            check_version()
             from . import private_names
 
             private_names.check()

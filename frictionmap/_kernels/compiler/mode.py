@@ -1,7 +1,8 @@
 """Which compiler a process uses: the fast one of this package, or plain numba.
 
-The fast compiler relies on private parts of numba.  If one is missing, or fails when a kernel is compiled,
-the whole process changes to plain numba, which gives the same results after a longer compilation.
+The fast compiler relies on private parts of numba, and is used with those versions of numba that it was
+tested with.  If a part is missing, or fails when a kernel is compiled, the whole process changes to plain
+numba, which gives the same results after a longer compilation.
 """
 
 import os
@@ -18,6 +19,14 @@ from .notices import log, warn_once
 VARIABLE = "FRICTIONMAP_COMPILER"
 VALUES = ("fast", "plain")
 
+#: Versions of numba that the tests of the compiler were run with: with another, a kernel may be compiled
+#: wrongly without an error.
+TESTED = ("0.60", "0.61", "0.62", "0.63", "0.64", "0.65", "0.66", "0.67", "0.68")
+
+
+class UntestedNumba(Exception):
+    """The fast compiler was not tested with this version of numba."""
+
 
 def requested() -> str:
     """Return the compiler that the environment asks for."""
@@ -25,6 +34,13 @@ def requested() -> str:
     if value not in VALUES:
         raise InputError(f"unknown {VARIABLE} {value!r}; valid: {', '.join(VALUES)}")
     return value
+
+
+def check_version() -> None:
+    """Raise UntestedNumba unless this numba was tested, or the environment asks for the fast compiler."""
+    tested = ".".join(numba.__version__.split(".")[:2]) in TESTED
+    if not tested and not os.environ.get(VARIABLE):
+        raise UntestedNumba(f"tested are {TESTED[0]} to {TESTED[-1]}; {VARIABLE}=fast uses it nevertheless")
 
 
 def warn_of_plain(error: Exception) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from ..model.held_structure import constrained_frequencies
+from ..model.held_structure import frequencies_with_held
 from ..model.system import System
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales
@@ -60,17 +60,8 @@ def _patterns(count: int) -> Iterator[tuple[int, ...]]:
 
 def natural_frequencies(system: System) -> np.ndarray:
     """Natural frequency ratios with contacts free and held, in all combinations of few; increasing."""
-    contacts = system.contact_system
-    mass, stiffness = system.modes.mass, system.modes.stiffness
-    vectors, springs = contacts.vectors, [group.stiffness for group in contacts.groups]
-    found = []
-    for pattern in _patterns(len(springs)):
-        rigid = [j for j in pattern if springs[j] is None]
-        added = sum(
-            ((springs[j] or 0.0) * np.outer(vectors[j], vectors[j]) for j in pattern), 0.0 * stiffness
-        )
-        found.append(constrained_frequencies(mass, stiffness + added, vectors[rigid]))
-    return np.unique(np.concatenate(found))
+    patterns = _patterns(system.contact_system.count)
+    return np.unique(np.concatenate([frequencies_with_held(system, pattern) for pattern in patterns]))
 
 
 def _zeta(system: System) -> float:

@@ -4,18 +4,18 @@
 module             what is in it
 =================  ===========================================================================================
 scene_parts        sliders, contacts and boundaries that a page offers
-general_scene      what can be changed of a system with several contacts, springs or belts
+contacts           contacts to choose from: places of the only one, or which of several is shown
+sliders            numbers of a system that can be changed
 scene              subject of a page: system, initial view, parameters that can be changed
-views              one view: changed system, ranges of r and beta, mu; quantities of its cells
-general_lines      boundaries of systems with several contacts, springs, belts or periodic loads
+views              one view: changed system, ranges of r and beta, mu
+quantities         what the cells of a map show: classes of their regime, or a quantity
 lines              boundaries of a view: values, and how the page draws them
-general_views      maps of systems with several contacts: quantities, classes, cells
 pieces             pieces of a map for the page: cells, classes, quantities, boundaries
 example            cell whose motion the page opens with
 drawing            drawing of a system in motion: masses, springs, contacts, loads
-general_cell       one cell of a system with several contacts: its motion, contact by contact
+numbers            numbers of a cell, as the page lists them
+sentences          a motion in sentences: what the contacts do, and why
 cell               one cell: its motion, and that from another initial state
-general_cut        response curves through a view of a system with several contacts
 cut                response curves through a view
 subjects           responses that a goal can be about
 queries            queries of the page, checked like a configuration

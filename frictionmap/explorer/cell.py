@@ -2,27 +2,25 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from .. import regimes
 from ..errors import NoSteadyState
 from ..model.general import refuse_general
-from ..model.settings import Output, Start
-from ..model.system import System
+from ..model.settings import Start
 from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
-from ..single.maps import solve_map
-from ..single.motion import MotionRequest, SteadyMotion, find_motion
 from .drawing import drawing_curves, drawing_of
-from .views import Follower, View, name_of_mass
+from .lines import line_values
+from .numbers import numbers_of
+from .quantities import counted_of
+from .sentences import describe_motion
+from .views import Follower, View
 
 #: Samples per excitation period: a curve a few hundred pixels wide is smooth with them.
 _SAMPLES = 400
-
-#: Masses whose numbers are listed one by one.
-_LISTED = 12
 
 #: Relative difference of amplitudes above which two initial states lead to different motions.
 _OTHER = 1e-6
@@ -30,163 +28,96 @@ _OTHER = 1e-6
 Packet = tuple[dict[str, Any], dict[str, np.ndarray]]
 
 
-class Entry(NamedTuple):
-    """A number of a cell, as the page lists it."""
-
-    name: str
-    label: str
-    unit: str  # "length" and "energy" are named by the page, as the load is a force or a base's motion
-    why: str = ""  # reason why there is no number
-
-
-_ENTRIES = (
-    Entry("stops_per_cycle", "stops per cycle", ""),
-    Entry("stuck_fraction", "share of time stuck", "%"),
-    Entry("contact_amplitude", "amplitude in the contact", "length"),
-    Entry("contact_first_harmonic_amplitude", "first harmonic in the contact", "length"),
-    Entry("contact_first_harmonic_phase", "phase lag of this harmonic", "rad"),
-    Entry("amplitude", "amplitude of", "length"),
-    Entry("phase_lag", "phase lag of", "rad"),
-    Entry("work_friction", "energy dissipated by friction per cycle", "energy"),
-    Entry("work_damping", "energy dissipated by damping per cycle", "energy"),
-    Entry("equivalent_damping", "equivalent damping of the contact, cω/k₁", ""),
-    Entry("period", "period, in excitation periods", ""),
-    Entry("beta_lim", "β_lim at this r", ""),
-    Entry("beta_stick", "β_stick at this r", ""),
-)
-
-#: What a motion without slides has, and what else a list would only repeat.
-_MOVING = ("stops_per_cycle", "contact_amplitude", "contact_first_harmonic_amplitude",
-           "contact_first_harmonic_phase", "work_friction", "equivalent_damping")  # fmt: skip
-
-
 def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
     """The motion in a cell for the page.
 
     Arrays over `tau`: `z`, its velocity `z_rate`, `friction`, `direction` (-1, 0, 1), `x` (masses, tau).
-    Moduli of harmonics 0 to 7: `z_harmonics`, `friction_harmonics`.  `numbers` are those of the header's
-    `entries`; its `dofs` are the numbers of the masses.  Its `drawing` describes what is drawn in motion,
-    with the arrays of `drawing_curves`.
+    Moduli of harmonics 0 to 7: `z_harmonics`, `friction_harmonics`.  They are those of the contact that is
+    shown; all contacts together have one row per contact, and their names under `contacts`.  `numbers` are
+    those of the header's `entries`; its `dofs` are the numbers of the masses.  Its `drawing` describes what
+    is drawn in motion, with the arrays of `drawing_curves`, the directions in all contacts, `states`, and how
+    far their springs are `stretched`.
 
     Where there is no steady state, the header says why under `none`, and there are no arrays.
     """
     view.check(r)
     follower.watch()
-    if view.system.general is not None:
-        from .general_cell import general_motion  # this module is needed for few systems
-
-        return general_motion(view, r, beta)
-    # what a map is asked for beside the motion would take as long again
-    solver = replace(view.solver, outputs=("regime",))
+    header: dict[str, Any] = {"r": r, "beta": beta, "others": view.engine.compares_starts}
+    limits = line_values(view, np.array([r]))
     try:
-        found = find_motion(MotionRequest(view.system, r, beta, view.mu, solver, _SAMPLES))
+        values, comment = view.engine.traced(r, beta, view.mu, view.solver, _SAMPLES)
     except NoSteadyState as error:
-        return {"r": r, "beta": beta, "class": UNRESOLVED, "none": str(error)}, {}
-    values = _numbers(found)
-    regime, stops = (np.array([values[name]]) for name in ("regime", "stops_per_cycle"))
-    entries, numbers = _listed(view.system, values)
-    header = {
-        "r": r,
-        "beta": beta,
-        "class": int(of_cells(regime, stops)[0]),
-        "regime": next(code.name for code in regimes.REGIMES if code.value == regime[0]),
-        "summary": describe_motion(beta, values),
+        return {**header, "class": UNRESOLVED, "none": str(error)}, {}
+    entries, numbers = numbers_of(view, values, limits)
+    k, several = view.shown, view.system.contact_system.count > 1
+    header |= {
+        **_regime(view, values), "summary": describe_motion(view, beta, values, limits),
         "entries": [entry._asdict() for entry in entries],
-        "comment": found.comment,
-        "dofs": view.system.dofs.numbers,
+        "comment": comment, "dofs": view.system.dofs.numbers,
+        "contacts": [one.name for one in view.contacts] if k is None else [],
+        "contact": view.contacts[0].name if k is not None and several else "",
+        "still": ["stuck" if one.stiffness is None else "without slip" for one in view.contacts],
         "drawing": drawing_of(view.system),
+    }  # fmt: skip
+    return header, {**curves_of(view, values), "numbers": numbers}
+
+
+def _regime(view: View, values: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    """Class and regime of the contact shown, or of all: its name, or a heading where it has none."""
+    by, k = counted_of(view), view.shown
+    regime = np.array([values["regime"] if k is None else values["contact_regime"][k]])
+    stops = np.array([values[by.variable][k]]) if by.variable else None
+    found = int(of_cells(regime, stops)[0])
+    if k is not None and not view.is_elastic:
+        names = {code.value: code.name for code in regimes.BELT_REGIMES}
+        return {"class": found, "regime": names[int(regime[0])]}
+    label = by.labels[int(of_cells(regime, None)[0])]
+    if regime[0] == regimes.STICK_SLIP:
+        label = "stick-slip" if k is None else "slips and rests"
+    return {"class": found, "regime": label[0].upper() + label[1:]}
+
+
+def curves_of(view: View, values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Curves of a motion for the page, float32: of the contact that is shown, or one row per contact."""
+    system, k = view.system, view.shown
+    tau, direction = values["tau"], values["direction"]
+    traces = {
+        "z": values["z"],
+        "z_rate": _rates(view, values),
+        "friction": values["friction"],
+        "z_harmonics": _moduli(values["contact_harmonic"]),
+        "friction_harmonics": _moduli(values["friction_harmonic"]),
     }
-    return header, {**curves_of(view, found), "numbers": np.array(numbers)}
-
-
-def _numbers(found: SteadyMotion) -> dict[str, Any]:
-    """The numbers of a cell, as a dataset would have them."""
-    limits = {name: float(getattr(found.curves, name)[0, 0]) for name in ("beta_lim", "beta_stick")}
-    return {**found.cycle, **found.summary, **limits}
-
-
-def _listed(system: System, values: Mapping[str, Any]) -> tuple[list[Entry], list[float]]:
-    """Entries of the list of a cell and their numbers, those of masses one by one."""
-    entries: list[Entry] = []
-    numbers: list[float] = []
-    stuck = values["regime"] == regimes.PERMANENT_STICKING
-    for entry in _ENTRIES:
-        if stuck and entry.name in _MOVING:
-            continue
-        of_masses = np.ndim(values[entry.name]) == 1
-        for row, value in enumerate(np.atleast_1d(values[entry.name])[:_LISTED].tolist()):
-            mass = f" {name_of_mass(system, system.dofs.numbers[row])}" if of_masses else ""
-            none = entry.name == "phase_lag" and np.isnan(value)
-            why = _reason_for_no_lag(values, row) if none else ""
-            entries.append(entry._replace(label=entry.label + mass, why=why))
-            numbers.append(100.0 * value if entry.unit == "%" else float(value))
-    return entries, numbers
-
-
-def _reason_for_no_lag(values: Mapping[str, Any], k: int) -> str:
-    """Explain why mass k, counted from 0, has no lag: its maximum has no single phase in the cycle."""
-    period = int(values["period"])
-    if period != 1:
-        return f"the period is {period} cycles" if period else "the motion has no period"
-    if values["amplitude"][k] == 0.0:
-        return "the mass is at rest"
-    begin, end = (f"{values[name][k]:.3f}".replace("-", "−") for name in ("phase_begin", "phase_end"))
-    return f"held at its maximum from {begin} to {end} rad"
-
-
-def curves_of(view: View, found: SteadyMotion) -> dict[str, np.ndarray]:
-    """Curves of a motion for the page, float32."""
-    system, history = view.system, found.history
-    rate = system.contact_vector @ history.v + system.base_motion * np.sin(history.tau)
-    drawn = {
-        "tau": history.tau,
-        "z": history.z,
-        "z_rate": np.where(history.direction == 0, 0.0, rate),  # at rest to the bit, not to rounding
-        "friction": history.friction,
-        "x": history.x,
-        "z_harmonics": _moduli(found.cycle["contact_harmonic"]),
-        "friction_harmonics": _moduli(found.cycle["friction_harmonic"]),
+    rows = {name: table if k is None else table[k] for name, table in traces.items()}
+    drawn = {"tau": tau, "x": values["x"], **rows, "stretched": _stretched(view, values["friction"])}
+    return {
+        **{name: table.astype(np.float32) for name, table in drawn.items()},
+        **drawing_curves(system, tau),
+        "states": direction.astype(np.int8),
+        "direction": np.ascontiguousarray(direction if k is None else direction[k]).astype(np.int8),
     }
-    arrays = {name: values.astype(np.float32) for name, values in drawn.items()}
-    return {**arrays, **drawing_curves(system, history.tau), "direction": history.direction}
+
+
+def _rates(view: View, values: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Velocity z' in every contact; that of its wall, where a rigid one is stuck."""
+    contacts, tau = view.system.contact_system, values["tau"]
+    base = sum(-n * (u * np.exp(1j * n * tau)).imag for n, u in contacts.base.items()) + np.zeros_like(tau)
+    rows = []
+    for group, direction in zip(contacts.groups, values["direction"], strict=True):
+        rate = group.vector @ values["v"] - group.base * base
+        stuck = (direction == 0) & (group.stiffness is None)  # to the bit, not to rounding
+        rows.append(np.where(stuck, group.first.wall_velocity, rate))
+    return np.array(rows)
+
+
+def _stretched(view: View, friction: np.ndarray) -> np.ndarray:
+    """How far the spring of every contact is stretched; a rigid one has none."""
+    stiffness = np.array([[one.stiffness or np.inf] for one in view.system.contact_system.groups])
+    return friction / stiffness
 
 
 def _moduli(harmonics: np.ndarray) -> np.ndarray:
     return np.hypot(harmonics[..., 0], harmonics[..., 1])
-
-
-def describe_motion(beta: float, numbers: Mapping[str, Any]) -> list[str]:
-    """Describe in sentences what the contact does in a cell, and why."""
-    sentences = [_describe_regime(numbers)]
-    lim, stick = numbers["beta_lim"], numbers["beta_stick"]
-    if beta >= stick:
-        why = f"β = {beta:.4g} reaches β_stick = {stick:.4g}: friction can hold the contact permanently."
-    elif beta < lim:
-        why = f"β = {beta:.4g} lies below β_lim = {lim:.4g}: the contact can slide without stopping."
-    else:
-        why = (
-            f"β = {beta:.4g} lies between β_lim = {lim:.4g} and β_stick = {stick:.4g}: friction stops the "
-            "contact, but cannot hold it permanently."
-        )
-    sentences.append(why)
-    status = int(numbers["status"])
-    if status != regimes.RESOLVED:
-        meaning = regimes.status_meaning(status)
-        sentences.append(f"{meaning[0].upper()}{meaning[1:]}.")
-    return sentences
-
-
-def _describe_regime(numbers: Mapping[str, Any]) -> str:
-    regime = numbers["regime"]
-    if regime == regimes.PERMANENT_STICKING:
-        return "The contact never slides: friction holds it permanently."
-    if regime == regimes.CONTINUOUS:
-        return "The contact slides to and fro without stopping."
-    if regime == regimes.UNRESOLVED:
-        return "No steady state was found."
-    stops, stuck = numbers["stops_per_cycle"], 100.0 * numbers["stuck_fraction"]
-    plural = "stop" if stops == 1.0 else "stops"
-    return f"The contact slides and stops: {stops:.4g} {plural} per cycle; stuck {stuck:.3g} % of the time."
 
 
 _STARTS: dict[str, Start] = {"rest": "moving", "moving": "rest"}
@@ -221,12 +152,11 @@ def others(view: View, r: float, beta: float, follower: Follower) -> Packet:
     return header, arrays
 
 
-def _one(view: View, r: float, beta: float, follower: Follower, *outputs: Output) -> dict[str, Any]:
+def _one(view: View, r: float, beta: float, follower: Follower, *names: str) -> dict[str, Any]:
     """Compute a map of one cell."""
     axes = {"mu": np.array([view.mu]), "r": np.array([r]), "beta": np.array([beta])}
-    solver = replace(view.solver, outputs=("regime", *outputs))
-    found, _ = solve_map(view.system, axes, solver, 1, None, follower.watch)
-    return {name: values[0, 0, 0] for name, values in found.items()}
+    found, _ = view.engine.cells(axes, names, view.solver, 1, None, follower.watch)
+    return {name: values.item() for name, values in found.items()}
 
 
 def _alike(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:

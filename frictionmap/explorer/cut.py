@@ -6,6 +6,7 @@ import numpy as np
 
 from ..model.settings import Quantity, curve_settings
 from ..pictures.classes import of_cells
+from .quantities import counted_of
 from .views import Follower, View, middles
 
 Along = Literal["r", "beta"]
@@ -13,7 +14,18 @@ Along = Literal["r", "beta"]
 #: Cells computed at once: a request cannot be cancelled while their boundaries are determined.
 _AT_ONCE = 96
 
+#: Cells of a curve at most where each motion is followed, which takes some milliseconds.
+_FOLLOWED = 240
+
 _QUANTITIES: tuple[Quantity, ...] = ("amplitude", "first_harmonic", "energy")
+
+#: Arrays of contacts, and those along r, with their names in datasets.
+_OF_CONTACTS = {
+    "contact_amplitude": "contact_amplitude",
+    "contact_phase": "contact_first_harmonic_phase",
+    "work_friction": "work_friction",
+}
+_ALONG_R = {"held": "held_response", "limit": "limit_amplitude"}
 
 
 def cut(
@@ -22,45 +34,48 @@ def cut(
     """Response curves along r at one beta, or along beta at one r.
 
     Arrays over the cut: `classes`; `contact_amplitude`, `work_friction`, `contact_phase` (of the first
-    harmonic); `amplitude` (masses, cells).  Along r also `held` (masses, cells), with the contact held, and
-    `limit`, those at beta_lim.
+    harmonic), of the contact that is shown, or (contacts, cells) of those whose names the header has under
+    `contacts`; `amplitude` (masses, cells).  Along r also `held` (masses, cells), with the contact held, and
+    `limit`, those at beta_lim, if they are closed forms.
     """
     view.check(None if along == "r" else at)
-    if view.system.general is not None:
-        from .general_cut import general_cut  # this module is needed for few systems
-
-        return general_cut(view, along, at, count, follower)
+    count = count if view.engine.has_closed_limits else min(count, _FOLLOWED)
     place = middles(getattr(view, along), count, "count")
     pieces: list[dict[str, np.ndarray]] = []
     for first in range(0, count, _AT_ONCE):
         follower.watch()
         pieces.append(_piece(view, along, at, place[first : first + _AT_ONCE], follower))
     joined = {name: np.concatenate([piece[name] for piece in pieces], axis=-1) for name in pieces[0]}
-    header = {"along": along, "at": at, "ends": getattr(view, along), "dofs": view.system.dofs.numbers}
+    header = {
+        "along": along, "at": at, "ends": getattr(view, along), "dofs": view.system.dofs.numbers,
+        "contacts": [one.name for one in view.contacts] if view.shown is None else [],
+    }  # fmt: skip
     return header, joined
 
 
 def _piece(
     view: View, along: Along, at: float, places: np.ndarray, follower: Follower
 ) -> dict[str, np.ndarray]:
-    from ..single.curves import solve_curves  # with xarray, which a page can do without until a line is drawn
-
+    """Arrays of some cells of a cut."""
     here = np.array([at])
     axes = {"r": places, "beta": here} if along == "r" else {"r": here, "beta": places}
     axes["mu"] = np.array([view.mu])
-    asked = curve_settings(None, _QUANTITIES)
-    found = solve_curves(view.system, axes, view.solver, asked, None, follower.progress, follower.watch)
-    names = {
-        "contact_amplitude": "contact_amplitude",
-        "contact_phase": "contact_first_harmonic_phase",
-        "work_friction": "work_friction",
-        "amplitude": "amplitude",
-        "regime": "regime",
-        "stops": "stops_per_cycle",
-    }
-    if along == "r":
-        names |= {"held": "held_response", "limit": "limit_amplitude"}
-    only = {"mu": 0, "beta" if along == "r" else "r": 0}
-    flat = {ours: found[name].isel(only, missing_dims="ignore").values.T for ours, name in names.items()}
-    classes = of_cells(flat.pop("regime"), flat.pop("stops"))
-    return {"classes": classes, **{name: values.astype(np.float32) for name, values in flat.items()}}
+    found = view.engine.curves(
+        axes, view.solver, curve_settings(None, _QUANTITIES), None, follower.progress, follower.watch
+    ).isel({"mu": 0, "beta" if along == "r" else "r": 0}, missing_dims="ignore")
+    k, count = view.shown, view.system.contact_system.count
+
+    def table(name: str) -> np.ndarray:
+        """Values (rows, cells), of one contact (cells,); NaN if no cell has them."""
+        if name not in found:
+            rows = view.system.n if name == "amplitude" else count if k is None else None
+            return np.full((places.size,) if rows is None else (rows, places.size), np.nan)
+        values = found[name].values.T
+        return values if k is None or "contact" not in found[name].dims else values[k]
+
+    along_r = {ours: name for ours, name in _ALONG_R.items() if along == "r" and name in found}
+    names = {**_OF_CONTACTS, "amplitude": "amplitude", **along_r}
+    by = counted_of(view).variable
+    regime = table("contact_regime" if count > 1 and k is not None else "regime")
+    flat = {ours: table(name).astype(np.float32) for ours, name in names.items()}
+    return {"classes": of_cells(regime, table(by) if by else None), **flat}

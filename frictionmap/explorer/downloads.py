@@ -14,8 +14,9 @@ from ..model.matrices import Matrices
 from ..model.settings import Output, Solver
 from ..steady.sweep import swept
 from ..units.scales import scales_of
+from .quantities import CellQuantity
 from .scene import Scene
-from .views import CellQuantity, Follower, Piece, View
+from .views import Follower, Piece, View
 
 #: Largest number of degrees of freedom whose matrices are written to a configuration, not only their file.
 _WRITTEN = 64

@@ -3,10 +3,11 @@
 import numpy as np
 
 from ..pictures.palette import CONTINUOUS, MORE, ONE, ONE_WAY, UNCOUNTED
-from .pieces import classes_of, quantities_of, solve_piece
+from .pieces import classes_of, solve_piece
+from .quantities import quantities_of
 from .views import Follower, Piece, View
 
-#: Cells of the map in which it is looked for: of one mass with one contact; of others, which take longer.
+#: Cells of the map in which it is looked for, by whether they take long.
 _CELLS = {False: (48, 36), True: (24, 18)}
 
 #: Digits of its frequency and friction ratio.
@@ -18,7 +19,7 @@ def example_cell(view: View, follower: Follower) -> tuple[float, float] | None:
 
     Motions with an integer number of stops per cycle come first: they repeat.
     """
-    columns, rows = _CELLS[view.system.n > 1 or view.system.general is not None]
+    columns, rows = _CELLS[not view.is_quick]
     found = solve_piece(view, quantities_of(view)[:1], Piece(columns, rows, 0, columns), follower)
     _, arrays = classes_of(found, ())
     axes = view.axes(columns, rows)

@@ -2,23 +2,44 @@
 
 import numpy as np
 
-from ..theory.boundary_curves import find_curves
+from ..solvers.interface import Limits
 from .scene_parts import Line
 from .views import View
 
-_ONE_CONTACT = (
-    Line(("beta_lim",), "lim", (), "below: continuous sliding is possible"),
-    Line(("beta_stick",), "stick", (7, 4), "at or above: the contact can stay stuck"),
-)
+_DASHED, _DOTTED = (7, 4), (2, 3)
 
 
 def lines_of(view: View) -> tuple[Line, ...]:
     """The boundaries that a view has."""
-    if view.system.general is None:
-        return _ONE_CONTACT
-    from .general_lines import general_lines  # these modules are needed for few systems
+    elastic, k = view.system.contact_system.elastic, view.shown
+    held = ", the others held" if elastic.size > 1 else ""
+    if k is not None and elastic[k]:
+        return (_no_slip(f"the contact never slips{held}", _DASHED),)
+    stick = _stick(view, "all contacts can stay stuck" if k is None else f"the contact can stay stuck{held}")
+    if elastic.all():
+        return (_no_slip("no contact slips", _DASHED),)
+    if elastic.any():
+        return stick if k is not None else (_no_slip("no elastic contact slips", _DOTTED), *stick)
+    who = "no contact stops" if elastic.size > 1 else "the contact can slide without stopping"
+    return (Line(("beta_lim",), "lim", (), f"below: {who}"), *stick, *_further(view))
 
-    return general_lines(view)
+
+def _no_slip(meaning: str, dashes: tuple[int, ...]) -> Line:
+    return Line(("beta_noslip",), "noslip", dashes, f"at or above: {meaning}")
+
+
+def _stick(view: View, meaning: str) -> tuple[Line, ...]:
+    """The boundary to permanent sticking; none on a belt, which takes the mass along."""
+    if any(one.first.wall_velocity for one in view.contacts):
+        return ()
+    return (Line(("beta_stick",), "stick", _DASHED, f"at or above: {meaning}"),)
+
+
+def _further(view: View) -> tuple[Line, ...]:
+    """Ends of ranges without a stop that do not begin at beta = 0, or are not the first."""
+    count = view.engine.intervals
+    names = tuple(f"no_stop_{end}_{k}" for k in range(1, count + 1) for end in ("begin", "end"))
+    return (Line(names, "", _DOTTED, "ends of further ranges without stops"),) if count else ()
 
 
 def line_names(view: View) -> tuple[str, ...]:
@@ -28,9 +49,21 @@ def line_names(view: View) -> tuple[str, ...]:
 
 def line_values(view: View, r: np.ndarray) -> dict[str, np.ndarray]:
     """The curves of a view over r."""
-    if view.system.general is None:
-        curves = find_curves(view.system, r, np.array([view.mu]))
-        return {"beta_lim": curves.beta_lim[0], "beta_stick": curves.beta_stick[0]}
-    from .general_lines import general_line_values, limits_of
+    return values_of_lines(view, view.engine.limits(r, np.array([view.mu])))
 
-    return general_line_values(view, limits_of(view, r))
+
+def values_of_lines(view: View, limits: Limits) -> dict[str, np.ndarray]:
+    """The curves of a view from the boundaries of its system."""
+    elastic, k = view.system.contact_system.elastic, view.shown
+    by_contact = limits.beta_stick_contact[0]
+    found = {
+        "beta_lim": limits.beta_lim[0],
+        "beta_stick": limits.beta_stick[0] if k is None else by_contact[:, k],
+    }
+    if elastic.any():
+        found["beta_noslip"] = by_contact[:, elastic if k is None else [k]].max(axis=1)
+    for number, ends in enumerate(zip(limits.begins[0].T, limits.ends[0].T, strict=True), 1):
+        known = ends[0] == 0.0  # beta_lim says it
+        for name, values in zip(("begin", "end"), ends, strict=True):
+            found[f"no_stop_{name}_{number}"] = np.where(known, np.nan, values)
+    return {name: found[name] for name in line_names(view)}

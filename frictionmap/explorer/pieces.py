@@ -2,53 +2,51 @@
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
-from ..model.settings import Output
+from ..model.held_structure import frequencies_with_held
 from ..model.system import System
 from ..pictures.classes import of_cells, stops_range
 from ..pictures.palette import MORE, NON_INTEGER
-from ..single.maps import solve_map
-from .lines import line_names, line_values
-from .views import CellQuantity, Follower, Piece, View, middles, quantities
+from ..solvers.interface import OF_CONTACTS
+from .lines import line_names, line_values, values_of_lines
+from .quantities import CellQuantity, counted_of
+from .views import Follower, Piece, View, middles
 
 #: Frequencies of a kind that are marked.
 _MOST_MARKS = 200
 
 
-def quantities_of(view: View) -> tuple[CellQuantity, ...]:
-    """Quantities that can colour the cells of a view."""
-    if view.system.general is None:
-        return quantities(view.system)
-    from .general_views import general_quantities  # these modules are needed for few systems
-
-    return general_quantities(view)
-
-
 def solve_piece(
     view: View, wanted: Sequence[CellQuantity], piece: Piece, follower: Follower
 ) -> dict[str, np.ndarray]:
-    """The cells of a piece as `sweep` gives them, (columns, rows): regime, stops per cycle, the quantities.
+    """The cells of a piece, (columns, rows), as `sweep` gives them, and over its columns the boundaries.
 
-    And over its columns the boundaries.
+    `regime`, `stops_per_cycle`, in its place slips, and the quantities are those of the contact that is
+    shown; all contacts together have no number of stops.
     """
     piece.check()
     view.check()
     axes = view.axes(piece.columns, piece.rows)
     axes["r"] = axes["r"][piece.first : piece.last]
-    if view.system.general is not None:
-        from .general_views import solve_general
-
-        return {name: values[0] for name, values in solve_general(view, wanted, axes, follower).items()}
+    by, k = counted_of(view).variable, view.shown
     asked = (quantity.output for quantity in wanted if quantity.output)
-    outputs = tuple(dict.fromkeys(("regime", "stops_per_cycle", *asked)))
-    solver = replace(view.solver, outputs=cast(tuple[Output, ...], outputs))
-    found, curves = solve_map(view.system, axes, solver, None, follower.progress, follower.watch)
-    found |= {"beta_lim": curves.beta_lim, "beta_stick": curves.beta_stick}
-    return {name: values[0] for name, values in found.items()}  # of the only mu
+    names = tuple(dict.fromkeys((*filter(None, (by,)), *asked)))
+    solved, limits = view.engine.cells(axes, names, view.solver, None, follower.progress, follower.watch)
+    found = {name: _of_shown(name, solved[name][0], k) for name in names}  # of the only mu
+    found["regime"] = solved["regime"][0] if k is None else solved["contact_regime"][0, ..., k]
+    if by:
+        found["stops_per_cycle"] = found[by]
+    return found | values_of_lines(view, limits)
+
+
+def _of_shown(name: str, values: np.ndarray, k: int | None) -> np.ndarray:
+    """Values of contact k, or the sum of all; those that are not of contacts as they are."""
+    if name not in OF_CONTACTS:
+        return values
+    return values.sum(axis=-1) if k is None else values[..., k]
 
 
 def classes_of(
@@ -101,12 +99,9 @@ def packet_of_lines(view: View, count: int) -> dict[str, np.ndarray]:
 
 def marks(system: System) -> dict[str, list[float]]:
     """Marked frequencies of a system."""
-    modes = system.modes
-    known = {"natural frequency": modes.w}
-    if system.general is not None:
-        from .general_views import held_frequencies
-
-        known["natural frequency, contacts held"] = held_frequencies(system)
-    elif system.n > 1:
-        known["natural frequency, contact held"] = modes.held_frequencies()
+    known = {"natural frequency": system.modes.w}
+    contacts = system.contact_system
+    if system.n > contacts.count or contacts.elastic.any():  # else nothing moves with them held
+        name = f"natural frequency, contact{'s' * (contacts.count > 1)} held"
+        known[name] = frequencies_with_held(system, range(contacts.count))
     return {name: places[:_MOST_MARKS].tolist() for name, places in known.items()}

@@ -8,10 +8,11 @@ from urllib.parse import parse_qsl
 from .. import checks
 from ..errors import InputError
 from ..model.settings import Start
+from .contacts import shown_contact
 from .cut import Along
-from .pieces import quantities_of
+from .quantities import CellQuantity, quantities_of
 from .scene import Scene, checked_range
-from .views import MOST_PIXELS, CellQuantity, Piece, View
+from .views import MOST_PIXELS, Piece, View
 
 #: Keys of a query; a page of many masses has some tens.
 _MOST_KEYS = 100
@@ -53,7 +54,7 @@ def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
         beta=_range(given, "beta", scene.beta),
         mu=checks.number(number(given["mu"], "mu"), "mu", least=1.0) if "mu" in given else scene.mu,
         solver=replace(scene.solver, start=start),  # type: ignore[arg-type]
-        contact=scene.shown_contact(given.get("contact", "")),
+        contact=shown_contact(given.get("contact", "")),
     )
     return Query(view, given)
 

@@ -9,8 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..theory.boundary_curves import find_curves
 from . import cell, cut, lines, pieces
+from .quantities import quantities_of
 from .views import Follower, Piece, View
 
 #: Position in the range of r at which motions are rehearsed; rounder ones, like the middle, often resonate.
@@ -21,41 +21,43 @@ def _place(view: View) -> float:
     return view.r[0] + _ASIDE * (view.r[1] - view.r[0])
 
 
+def _frictions(view: View) -> tuple[float, ...]:
+    """Friction ratios at the frequency of the rehearsal, with mu = 1, whose motions need all kernels.
+
+    Where closed forms say so, one of each regime, that between the boundaries first.
+    """
+    if not view.engine.has_closed_limits:
+        return (0.5 * sum(view.beta),)
+    limits = lines.line_values(replace(view, mu=1.0), np.array([_place(view)]))
+    lim, stick = limits["beta_lim"].item(), limits["beta_stick"].item()
+    if math.isinf(stick):  # held, it resonates: nothing sticks there
+        stick = 2.0 * lim + 1.0
+    return 0.5 * (lim + stick), 0.5 * lim, 1.5 * stick
+
+
 def _lines(view: View, follower: Follower) -> None:
     lines.line_values(view, np.array([_place(view)]))
 
 
-def _between(view: View) -> tuple[float, float]:
-    """beta_lim, and beta_stick, at the frequency of the rehearsal with mu = 1."""
-    limits = find_curves(view.system, np.array([_place(view)]), np.array([1.0]))
-    lim, stick = limits.beta_lim.item(), limits.beta_stick.item()
-    return lim, stick if math.isfinite(stick) else 2.0 * lim + 1.0  # held, it resonates: nothing sticks there
-
-
 def _map(view: View, follower: Follower) -> None:
-    """Cells over the whole map, and some between the boundaries, which closed forms do not decide."""
-    regimes = pieces.quantities_of(view)[0]
+    """Cells over the whole map, and some that closed forms do not decide."""
+    regimes = quantities_of(view)[0]
     pieces.piece_of_map(view, regimes, Piece(2, 2, 0, 2), follower)
-    if view.system.general is None:
-        r, beta = _place(view), 0.5 * sum(_between(view))
+    if view.engine.has_closed_limits:
+        r, beta = _place(view), _frictions(view)[0]
         narrow = replace(view, r=(r, 1.001 * r), beta=(beta, 1.001 * beta))
         pieces.piece_of_map(narrow, regimes, Piece(2, 2, 0, 2), follower)
 
 
 def _motion(view: View, follower: Follower) -> None:
-    """A motion of each regime, with mu = 1, where every motion is found at once."""
-    view, r = replace(view, mu=1.0), _place(view)
-    if view.system.general is not None:
-        cell.motion(view, r, 0.5 * sum(view.beta), follower)
-        return
-    lim, stick = _between(view)
-    for beta in (0.5 * (lim + stick), 0.5 * lim, 1.5 * stick):
-        cell.motion(view, r, beta, follower)
+    """Motions with mu = 1, where every one is found at once."""
+    for beta in _frictions(view):
+        cell.motion(replace(view, mu=1.0), _place(view), beta, follower)
 
 
 def _others(view: View, follower: Follower) -> None:
-    if view.system.general is None:
-        cell.others(replace(view, mu=1.0), _place(view), 0.5 * sum(_between(view)), follower)
+    if view.engine.compares_starts:
+        cell.others(replace(view, mu=1.0), _place(view), _frictions(view)[0], follower)
 
 
 def _cut(view: View, follower: Follower) -> None:
@@ -66,7 +68,7 @@ def _cut(view: View, follower: Follower) -> None:
 
 
 def _quantity(view: View, follower: Follower) -> None:
-    outputs = {quantity.output: quantity for quantity in pieces.quantities_of(view)[1:]}
+    outputs = {quantity.output: quantity for quantity in quantities_of(view)[1:]}
     for quantity in outputs.values():
         pieces.piece_of_map(replace(view, mu=1.0), quantity, Piece(2, 2, 0, 2), follower)
 

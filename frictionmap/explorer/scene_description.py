@@ -6,14 +6,15 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..pictures.palette import CLASSES
 from ..theory.refinement import boundary_check
 from ..units.scales import scales_of
 from ..units.table import UNITS, handy_unit
 from ..version import __version__
+from .contacts import is_placed, shown_contact
 from .lines import lines_of
-from .pieces import marks, quantities_of
+from .pieces import marks
 from .presets import PRESETS
+from .quantities import counted_of, looks_of, quantities_of
 from .scene import Scene
 from .subjects import describe_subjects
 from .views import View
@@ -75,21 +76,17 @@ def description(scene: Scene, view: View) -> dict[str, Any]:
 
 def _classes(view: View) -> dict[str, Any]:
     """Names and colours of the classes, what they count, and the contact that they are of."""
-    if view.system.general is None:
-        return {"classes": [look._asdict() for look in CLASSES], "events": "stops", "contact": ""}
-    from .general_views import counted_of, general_looks  # these modules are needed for few systems
-
-    name = "" if view.contact is None else view.system.general.groups[view.contact].name
-    looks = [look._asdict() for look in general_looks(view)]
+    name = "" if view.contact is None else view.contacts[0].name
+    looks = [look._asdict() for look in looks_of(view)]
     return {"classes": looks, "events": counted_of(view).events, "contact": name}
 
 
 def _contacts(scene: Scene, view: View) -> list[dict[str, Any]]:
-    """The contacts that can be chosen; those of a general system each with its quantities."""
+    """The contacts that can be chosen; of several that can be shown each with its quantities."""
     choices = [{"key": contact.key, "label": contact.label} for contact in scene.contacts]
-    if view.system.general is None or len(choices) == 1:
+    if view.system.contact_system.count == 1:
         return choices
-    views = [replace(view, contact=scene.shown_contact(contact.key)) for contact in scene.contacts]
+    views = [replace(view, contact=shown_contact(contact.key)) for contact in scene.contacts]
     return [
         {**choice, "quantities": offered_quantities(one)} for choice, one in zip(choices, views, strict=True)
     ]
@@ -112,7 +109,8 @@ def describe_scene(scene: Scene, view: View) -> dict[str, Any]:
         "start": scene.solver.start,
         "sliders": [slider._asdict() for slider in scene.sliders],
         "contacts": _contacts(scene, view),
-        "general": view.system.general is not None,
+        "placed": is_placed(scene.system),
+        "quick": view.is_quick,
         "presets": [{"key": key, "label": preset.label} for key, preset in PRESETS.items()],
         **{key: value for key, value in description(scene, view).items() if key != "contact"},
     }

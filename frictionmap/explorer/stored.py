@@ -17,20 +17,19 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from ..errors import InputError
-from ..model.system import System
 from .cell import motion
 from .example import example_cell
 from .lines import line_names
 from .packets import pack
-from .pieces import classes_of, quantities_of, solve_piece, values_of
+from .pieces import classes_of, solve_piece, values_of
+from .quantities import CellQuantity, quantities_of
 from .queries import read_query
 from .scene import Scene, Slider
 from .scene_description import describe_scene, description, units_of
 from .server import page_files
-from .views import CellQuantity, Follower, Piece, View
+from .views import Follower, Piece, View
 
-#: Cells of every map, each way: of one mass with one contact; of others, whose cells take up to some hundred
-#: times as long.
+#: Cells of every map, each way, by whether they take long.
 _CELLS = {False: (360, 270), True: (180, 135)}
 
 #: Places of each slider: two sliders are moved together, further ones by themselves.
@@ -130,14 +129,14 @@ def _stepped(values: np.ndarray, log: bool) -> dict[str, Any]:
     return {"low": low, "high": high, "log": log, "steps": _deflated(steps.astype(np.uint8).tobytes())}
 
 
-def _cells(system: System) -> tuple[int, int]:
+def _cells(view: View) -> tuple[int, int]:
     """Cells of every map of a system, each way."""
-    return _CELLS[system.n > 1 or system.general is not None]
+    return _CELLS[not view.is_quick]
 
 
 def _map(view: View, offered: tuple[CellQuantity, ...], follower: Follower) -> dict[str, Any]:
     """The map of a view, with all quantities."""
-    columns, rows = _cells(view.system)
+    columns, rows = _cells(view)
     found = solve_piece(view, offered, Piece(columns, rows, 0, columns), follower)
     names = line_names(view)
     header, arrays = classes_of(found, names)
@@ -186,7 +185,7 @@ def _content(scene: Scene, progress: MapProgress) -> dict[str, Any]:
             systems.append(about)
         maps[_name(kept, point)] = {**of_map, "about": systems.index(about)}
         progress(done + 1, count)
-    columns, rows = _cells(scene.system)
+    columns, rows = _cells(first.view)
     own = tuple(slider.value for slider in scene.sliders)
     return {
         "scene": describe_scene(scene, first.view),

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ..model.system import System
-from .views import name_of_mass
+from .quantities import name_of_mass
 
 #: Masses that are offered one by one.
 _OFFERED = 12

@@ -7,53 +7,14 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
+from ..model.general import MergedContact
 from ..model.settings import Solver
 from ..model.system import System
+from ..solvers.choose import engine_of
+from ..solvers.interface import Engine
 
 #: Pixels of a picture each way, and together: those of the largest screens.
 MOST_PIXELS, MOST_CELLS = 8192, 2**25
-
-#: Masses whose amplitudes are offered one by one.
-_OFFERED_MASSES = 12
-
-
-class CellQuantity(NamedTuple):
-    """A quantity that colours the cells of a map."""
-
-    key: str
-    label: str
-    output: str  # of a map; "" for the classes of regimes and stops
-    scale: str  # of the colours: "classes", "linear" or "log"
-    row: int | None = None  # of the mass that is meant, counted from 0
-
-
-_QUANTITIES = (
-    CellQuantity("regime", "regime and stops", "", "classes"),
-    CellQuantity("contact_amplitude", "amplitude in the contact", "contact_amplitude", "log"),
-    CellQuantity("multiplier", "Floquet multiplier", "multiplier", "linear"),
-    CellQuantity("stuck_fraction", "share of time stuck", "stuck_fraction", "linear"),
-    CellQuantity("work_friction", "energy dissipated by friction", "work_friction", "log"),
-)
-
-
-def quantities(system: System) -> tuple[CellQuantity, ...]:
-    """Quantities that can colour the cells of maps of a system."""
-    return (*_QUANTITIES[:2], *amplitude_quantities(system), *_QUANTITIES[2:])
-
-
-def amplitude_quantities(system: System) -> tuple[CellQuantity, ...]:
-    """Amplitudes of the masses."""
-    return tuple(
-        CellQuantity(
-            f"amplitude_{number}", f"amplitude of {name_of_mass(system, number)}", "amplitude", "log", row
-        )
-        for row, number in enumerate(system.dofs.numbers[:_OFFERED_MASSES])
-    )
-
-
-def name_of_mass(system: System, number: int) -> str:
-    """Name of a mass: its number and label; without a number if it is the only one."""
-    return f"mass {system.dofs.word(number)}" if system.n > 1 else "the mass"
 
 
 @dataclass(frozen=True)
@@ -66,6 +27,32 @@ class View:
     mu: float
     solver: Solver
     contact: int | None = None  # of a system with several, counted from 0; None: all together
+
+    @property
+    def engine(self) -> Engine:
+        """The engine that answers for the system."""
+        return engine_of(self.system)
+
+    @property
+    def shown(self) -> int | None:
+        """The contact that is shown, counted from 0; None: all together."""
+        return 0 if self.system.contact_system.count == 1 else self.contact
+
+    @property
+    def contacts(self) -> tuple[MergedContact, ...]:
+        """The contacts that are shown."""
+        groups = self.system.contact_system.groups
+        return groups if self.shown is None else (groups[self.shown],)
+
+    @property
+    def is_elastic(self) -> bool:
+        """Whether a contact that is shown has a spring."""
+        return any(one.stiffness is not None for one in self.contacts)
+
+    @property
+    def is_quick(self) -> bool:
+        """Whether its cells take microseconds: others take up to some hundred times as long."""
+        return self.engine.kernels == "one"
 
     def check(self, r: float | None = None) -> None:
         """Refuse a range, or a frequency, at which the error of a reduced structure exceeds its limit."""

@@ -1,6 +1,6 @@
 """Maps and boundaries of general systems as labelled variables."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -150,6 +150,26 @@ def contact_coordinates(system: System) -> dict[str, xr.Variable]:
     return found
 
 
+def cell_arrays(
+    system: System, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver,
+    threads: int | None, progress: Progress | None, watch: Watch | None,
+) -> tuple[dict[str, np.ndarray], Boundaries]:  # fmt: skip
+    """Outputs over the axes mu, r and beta, those of contacts (n_mu, n_r, n_beta, N), and the boundaries."""
+    general = general_of(system)
+    masses = any(name in _OF_MASSES for name in names)
+    threads = checks.threads(threads)
+    limits = find_boundaries(system, axes["r"], axes["mu"], threads, watch)
+    placed = _PLACED if general.elastic.any() else _PLACED - {"contact_amplitude"}
+    cells = solve_cells(
+        system, axes, limits.beta_stick, solver, threads, progress, watch, masses, bool(placed & set(names))
+    )
+    found = {}
+    for name in names:
+        values_of = contact_values if name in PER_CONTACT else cell_values
+        found[name] = values_of(name, system, cells).astype(LABELS[name].dtype, copy=False)
+    return found, limits
+
+
 def general_map(
     system: System, axes: Mapping[str, np.ndarray], solver: Solver, threads: int | None,
     progress: Progress | None, watch: Watch | None,
@@ -158,23 +178,13 @@ def general_map(
     general = general_of(system)
     refuse_static(general, axes["mu"])
     names = outputs_of(general, solver)
-    masses = any(name in _OF_MASSES for name in names)
-    threads = checks.threads(threads)
-    limits = find_boundaries(system, axes["r"], axes["mu"], threads, watch)
-    placed = _PLACED if general.elastic.any() else _PLACED - {"contact_amplitude"}
-    found = solve_cells(
-        system, axes, limits.beta_stick, solver, threads, progress, watch, masses, bool(placed & set(names))
-    )
+    found, limits = cell_arrays(system, axes, names, solver, threads, progress, watch)
     variables: dict[str, xr.Variable] = {}
-    for name in names:
+    for name, values in found.items():
         if name in PER_CONTACT:
-            values = contact_values(name, system, found)
-            variables[name] = contact_variable(
-                name, values.astype(LABELS[name].dtype, copy=False), general.count
-            )
+            variables[name] = contact_variable(name, values, general.count)
         else:
-            values = cell_values(name, system, found)
-            variables[name] = label_variable(name, values.astype(LABELS[name].dtype, copy=False))
+            variables[name] = label_variable(name, values)
     if any(group.first.wall_velocity for group in general.groups):
         label = LABELS["regime"]
         full = attributes(label._replace(codes=(*label.codes, *label.also)))
@@ -182,7 +192,7 @@ def general_map(
             if name in variables:
                 variables[name].attrs = full | {"long_name": LABELS[name].long_name}
     coords = {name: coordinate(name, values) for name, values in axes.items()}
-    if masses:
+    if any(name in _OF_MASSES for name in names):
         coords["dof"] = coordinate("dof", np.array(system.dofs.numbers))
     return xr.Dataset(
         variables | boundary_variables(system, limits), coords=coords | contact_coordinates(system)

@@ -4,11 +4,15 @@ With the contact held, chi.q = 0 for the free modes q.  Modal damping does not l
 are `damped_oscillators`.
 """
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from .damped_oscillators import damped_oscillators
+
+if TYPE_CHECKING:
+    from .system import System
 
 
 class HeldStructure(NamedTuple):
@@ -72,6 +76,19 @@ def _allowed(held: np.ndarray, n: int) -> np.ndarray:
     from scipy.linalg import null_space  # not needed, and not loaded, for one mass
 
     return null_space(held) if len(held) else np.eye(n)
+
+
+def frequencies_with_held(system: "System", contacts: Sequence[int]) -> np.ndarray:
+    """Natural frequencies with these contacts held, the others free.
+
+    Rigid ones do not move; springs of elastic ones are stuck at one end.
+    """
+    modes, groups = system.modes, [system.contact_system.groups[j] for j in contacts]
+    stiffness = modes.stiffness + sum(
+        ((one.stiffness or 0.0) * np.outer(one.vector, one.vector) for one in groups), 0.0 * modes.stiffness
+    )
+    rigid = np.array([one.vector for one in groups if one.stiffness is None])
+    return constrained_frequencies(modes.mass, stiffness, rigid)
 
 
 def constrained_frequencies(mass: np.ndarray, stiffness: np.ndarray, held: np.ndarray) -> np.ndarray:

@@ -44,9 +44,9 @@ def _over_frequency(system: System, axes: Mapping[str, np.ndarray], found: Curve
     return turned | limit_variables(system, axes["r"], axes["mu"], found)
 
 
-def solve_curves(
+def _variables(
     system: System, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
-    progress: Progress | None, watch: Watch | None = None,
+    progress: Progress | None, watch: Watch | None,
 ) -> dict[str, xr.Variable]:  # fmt: skip
     """Compute the variables of `curves` over the axes mu, r and beta; `watch` may end the computation."""
     basic, names = plain_outputs(asked), cycle_variables(asked)
@@ -63,8 +63,8 @@ def solve_curves(
 
 def single_curves(
     system: System, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
-    progress: Progress | None,
+    progress: Progress | None, watch: Watch | None,
 ) -> xr.Dataset:  # fmt: skip
     """Response curves over the axes mu, r and beta, with the coordinates `axes`; see `steady.curves`."""
     coords = {name: coordinate(name, values) for name, values in axes.items()}
-    return xr.Dataset(solve_curves(system, axes, solver, asked, threads, progress), coords=coords)
+    return xr.Dataset(_variables(system, axes, solver, asked, threads, progress, watch), coords=coords)

@@ -1,17 +1,17 @@
 """The engine of any number of contacts, springs in contacts, belts and periodic loads."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..general.boundaries import find_boundaries
+from ..general.boundaries import INTERVALS, Boundaries, find_boundaries
 from ..general.held import least_static_friction
 from ..general.problem import least_ratio
 from ..jobs import Progress, Watch
 from ..model.settings import CurveSettings, Solver
 from ..model.sizes import Sizes, Wanted
-from .interface import Engine
+from .interface import Engine, Limits
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,11 +19,17 @@ if TYPE_CHECKING:
     from ..single.points import States
 
 
+def _limits(found: Boundaries) -> Limits:
+    return Limits(found.beta_lim, found.beta_stick, found.beta_stick_contact, found.begins, found.ends)
+
+
 class GeneralEngine(Engine):
     """Any piecewise linear system: its motion is followed from a phase of the load to the next return."""
 
     has_closed_limits = False
+    intervals = INTERVALS
     states_status = True
+    compares_starts = False
     order_step = 1
 
     @property
@@ -44,6 +50,12 @@ class GeneralEngine(Engine):
         refuse_static(self.system.contact_system, mu)
 
     @property
+    def outputs(self) -> tuple[str, ...]:
+        from ..general.dataset import OUTPUTS
+
+        return OUTPUTS
+
+    @property
     def bytes_per_cell(self) -> float:
         contacts, masses = self.system.contact_system.count, self.system.n
         return 28.0 + 8.0 * 10.0 * contacts + 16.0 * (contacts + masses)
@@ -53,6 +65,10 @@ class GeneralEngine(Engine):
 
     def no_stop_limit(self, r: np.ndarray, mu: float, watch: Watch | None) -> np.ndarray:
         return find_boundaries(self.system, r, np.array([mu]), watch=watch, intervals=1).beta_lim[0]
+
+    def limits(self, r: np.ndarray, mu: np.ndarray, watch: Watch | None = None) -> Limits:
+        self.check_static(mu)
+        return _limits(find_boundaries(self.system, r, mu, watch=watch))
 
     def boundaries(self, r: np.ndarray, mu: np.ndarray) -> "xr.Dataset":
         from ..general.dataset import general_boundaries
@@ -67,13 +83,30 @@ class GeneralEngine(Engine):
 
         return general_map(self.system, axes, solver, threads, progress, watch)
 
+    def cells(
+        self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
+        progress: Progress | None, watch: Watch | None,
+    ) -> tuple[dict[str, np.ndarray], Limits]:  # fmt: skip
+        from ..general.dataset import cell_arrays
+
+        self.check_static(axes["mu"])
+        wanted = tuple(dict.fromkeys(("regime", "contact_regime", *names)))
+        found, limits = cell_arrays(self.system, axes, wanted, solver, threads, progress, watch)
+        return found, _limits(limits)
+
     def curves(
         self, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
-        progress: Progress | None,
+        progress: Progress | None, watch: Watch | None = None,
     ) -> "xr.Dataset":  # fmt: skip
         from ..general.curves import general_curves
 
-        return general_curves(self.system, axes, solver, asked, progress)
+        def told(done: int, total: int) -> None:
+            if watch is not None:
+                watch()
+            if progress is not None:
+                progress(done, total)
+
+        return general_curves(self.system, axes, solver, asked, told)
 
     def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
         from ..general.response import general_response

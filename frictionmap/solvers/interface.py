@@ -1,11 +1,12 @@
 """What an engine answers about a system."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
+from ..datasets.labels import CONTACT_TRACES, PER_CONTACT
 from ..jobs import Progress, Watch
 from ..model.settings import CurveSettings, Solver
 from ..model.sizes import Sizes, Wanted
@@ -17,18 +18,50 @@ if TYPE_CHECKING:
     from ..single.points import States
 
 
+#: Variables of a steady state with one value, or one row, per contact.
+OF_CONTACTS = frozenset((*PER_CONTACT, *CONTACT_TRACES))
+
+
+class Limits(NamedTuple):
+    """Boundaries over mu and r; NaN where a system has none of the kind."""
+
+    beta_lim: np.ndarray  # (n_mu, n_r) end of the first interval without stops
+    beta_stick: np.ndarray  # (n_mu, n_r) friction from which all contacts stick permanently
+    beta_stick_contact: np.ndarray  # (n_mu, n_r, N) and from which each does, the others held
+    begins: np.ndarray  # (n_mu, n_r, intervals) of the intervals without stops that are looked for
+    ends: np.ndarray
+
+
+class Motion(NamedTuple):
+    """A steady state in time as arrays, by the names of the dataset of `response`.
+
+    values : numbers (), of masses (n,) and contacts (N,), over time (n, tau) and (N, tau), harmonics
+        (..., harmonic, part)
+    comment : which part of an irregular motion it is; empty of others
+    """
+
+    values: dict[str, np.ndarray]
+    comment: str
+
+
 class Engine(ABC):
     """Answers about one system.
 
     Axes are mappings of mu, r and beta to increasing arrays; datasets come with variables and coordinates,
-    without provenance.
+    without provenance.  Arrays have an axis for the contacts (N,) even where there is one.
     """
 
     #: Whether beta_lim is a closed form; else motions are followed for it, a thousand times as long.
     has_closed_limits: ClassVar[bool]
 
+    #: Number of intervals without stops that its boundaries have beside `beta_lim`.
+    intervals: ClassVar[int]
+
     #: Whether maps always have `status`; else only where any cell is unresolved or averaged.
     states_status: ClassVar[bool]
+
+    #: Whether the motions from rest and from a large sliding motion can be compared in a cell.
+    compares_starts: ClassVar[bool]
 
     #: Distance of the orders of harmonics in the friction force.
     order_step: ClassVar[int]
@@ -63,6 +96,11 @@ class Engine(ABC):
 
     @property
     @abstractmethod
+    def outputs(self) -> tuple[str, ...]:
+        """Outputs of cells on offer."""
+
+    @property
+    @abstractmethod
     def bytes_per_cell(self) -> float:
         """Bytes of results of a map in a cell beside its outputs."""
 
@@ -73,6 +111,10 @@ class Engine(ABC):
     @abstractmethod
     def no_stop_limit(self, r: np.ndarray, mu: float, watch: Watch | None) -> np.ndarray:
         """beta_lim, (n_r,), of a system without elastic contacts."""
+
+    @abstractmethod
+    def limits(self, r: np.ndarray, mu: np.ndarray, watch: Watch | None = None) -> Limits:
+        """Boundaries of the regimes over r and mu as arrays."""
 
     @abstractmethod
     def boundaries(self, r: np.ndarray, mu: np.ndarray) -> "xr.Dataset":
@@ -86,11 +128,18 @@ class Engine(ABC):
         """Outputs, `status` and boundaries of all cells; `watch` may end the computation."""
 
     @abstractmethod
+    def cells(
+        self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
+        progress: Progress | None, watch: Watch | None,
+    ) -> tuple[dict[str, np.ndarray], Limits]:  # fmt: skip
+        """Arrays of these outputs and of `regime` and `contact_regime` over all cells, and the boundaries."""
+
+    @abstractmethod
     def curves(
         self, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
-        progress: Progress | None,
+        progress: Progress | None, watch: Watch | None = None,
     ) -> "xr.Dataset":  # fmt: skip
-        """Response curves; `axes` also holds the axes of masses and harmonics."""
+        """Response curves; `axes` may also hold the axes of masses and harmonics."""
 
     @abstractmethod
     def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
@@ -101,6 +150,17 @@ class Engine(ABC):
         NoSteadyState
             None exists, or none was found.
         """
+
+    def traced(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> Motion:
+        """The same as arrays."""
+        ds = self.motion(r, beta, mu, solver, points)
+        several = "contact" in ds.dims
+        values = {
+            str(name): one.values if several or name not in OF_CONTACTS else one.values[np.newaxis]
+            for name, one in ds.variables.items()
+        }
+        values.setdefault("contact_regime", values["regime"][np.newaxis])  # of the only one
+        return Motion(values, ds.attrs.get("comment", ""))
 
     @property
     @abstractmethod

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import regimes
+from ..datasets.labels import PER_CONTACT
 from ..jobs import Progress, Watch
 from ..model.general import contacts_of
-from ..model.settings import CurveSettings, Solver
+from ..model.settings import OUTPUTS, CurveSettings, Solver
 from ..model.sizes import Sizes, Wanted
-from ..theory.boundary_curves import find_curves, least_ratio
-from .interface import Engine
+from ..theory.boundary_curves import Curves, find_curves, least_ratio
+from .interface import OF_CONTACTS, Engine, Limits, Motion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,11 +21,19 @@ if TYPE_CHECKING:
     from ..single.points import States
 
 
+def _limits(curves: Curves) -> Limits:
+    """Boundaries of the only contact; there are no further intervals without stops."""
+    none = np.empty((*curves.beta_lim.shape, SingleEngine.intervals))
+    return Limits(curves.beta_lim, curves.beta_stick, curves.beta_stick[..., np.newaxis], none, none)
+
+
 class SingleEngine(Engine):
     """One rigid contact under one harmonic load: closed forms, and mirrored slides."""
 
     has_closed_limits = True
+    intervals = 0  # beta_lim is the end of the only one
     states_status = False
+    compares_starts = True
     order_step = 2  # its friction is antiperiodic
 
     @property
@@ -43,6 +52,10 @@ class SingleEngine(Engine):
         """Any mu >= 1 is possible."""
 
     @property
+    def outputs(self) -> tuple[str, ...]:
+        return OUTPUTS
+
+    @property
     def bytes_per_cell(self) -> float:
         return 0.0
 
@@ -51,6 +64,9 @@ class SingleEngine(Engine):
 
     def no_stop_limit(self, r: np.ndarray, mu: float, watch: Watch | None) -> np.ndarray:
         return find_curves(self.system, r, np.array([mu])).beta_lim[0]
+
+    def limits(self, r: np.ndarray, mu: np.ndarray, watch: Watch | None = None) -> Limits:
+        return _limits(find_curves(self.system, r, mu))
 
     def boundaries(self, r: np.ndarray, mu: np.ndarray) -> "xr.Dataset":
         from ..theory.boundaries import one_contact_boundaries
@@ -65,18 +81,46 @@ class SingleEngine(Engine):
 
         return single_map(self.system, axes, solver, threads, progress, watch)
 
+    def cells(
+        self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
+        progress: Progress | None, watch: Watch | None,
+    ) -> tuple[dict[str, np.ndarray], Limits]:  # fmt: skip
+        """Without labels, whose library takes longer to import than a page to show its first map."""
+        from ..single.maps import solve_map
+
+        settings = replace(solver, outputs=tuple(dict.fromkeys(("regime", *names))))  # type: ignore[arg-type]
+        found, curves = solve_map(self.system, axes, settings, threads, progress, watch)
+        found["contact_regime"] = found["regime"]
+        for name in (*names, "contact_regime"):
+            if name in PER_CONTACT:
+                found[name] = found[name][..., np.newaxis]
+        return found, _limits(curves)
+
     def curves(
         self, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
-        progress: Progress | None,
+        progress: Progress | None, watch: Watch | None = None,
     ) -> "xr.Dataset":  # fmt: skip
         from ..single.curves import single_curves
 
-        return single_curves(self.system, axes, solver, asked, threads, progress)
+        return single_curves(self.system, axes, solver, asked, threads, progress, watch)
 
     def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
         from ..single.response import single_response
 
         return single_response(self.system, r, beta, mu, solver, points)
+
+    def traced(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> Motion:
+        """Without labels, as `cells`, and without the outputs of a map, which would take as long again."""
+        from ..single.motion import MotionRequest, find_motion
+
+        settings = replace(solver, outputs=("regime",))
+        found = find_motion(MotionRequest(self.system, r, beta, mu, settings, points))
+        history = found.history
+        traces = {name: getattr(history, name) for name in ("tau", "x", "v", "z", "friction", "direction")}
+        values = traces | found.cycle | {name: np.array(value) for name, value in found.summary.items()}
+        values["contact_regime"] = values["regime"]
+        of_contact = {name: value[np.newaxis] for name, value in values.items() if name in OF_CONTACTS}
+        return Motion(values | of_contact, found.comment)
 
     @property
     def sizes(self) -> tuple[str, ...]:

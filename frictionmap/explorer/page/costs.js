@@ -45,8 +45,8 @@ function kindOf({ view }) {
   return [view.mu > 1, view.quantity, view.start, view.contact].join();
 }
 
-function guessed({ view, scene: { masses, general } }) {
-  if (masses === 1 && !general) return GUESS.one;
+function guessed({ view, scene: { masses, quick } }) {
+  if (quick) return GUESS.one;
   if (view.mu === 1) return GUESS.proved;
   return { ...GUESS.unproved, milliseconds: masses * GUESS.unproved.milliseconds };
 }

@@ -126,7 +126,7 @@ export class CutPanel {
   #lines(x) {
     const { curves } = this;
     const ink = colour("ink");
-    if (curves.contacts) return this.#ofContacts(x, ink);
+    if (curves.contacts.length) return this.#ofContacts(x);
     if (this.select.value === "work") return [{ x, y: curves.work_friction, colour: ink, width: 2, name: "energy per cycle" }];
     if (this.select.value === "phase") return [{ x, y: curves.contact_phase, colour: ink, width: 2, name: "z" }];
     const lines = [];
@@ -143,12 +143,11 @@ export class CutPanel {
   }
 
   /** Lines of all contacts that are shown, after those of the masses. */
-  #ofContacts(x, ink) {
+  #ofContacts(x) {
     const { curves } = this;
     const name = { amplitude: "contact_amplitude", work: "work_friction", phase: "contact_phase" }[this.select.value];
-    const several = curves.contacts.length > 1;
-    const lines = curves.contacts.map((contact, k) => ({ x, y: row(curves[name], k), width: 2, name: several ? contact : "contact",
-      colour: several ? massColour(k % DRAWN) : ink, dash: this.select.value === "amplitude" && several ? [6, 4] : undefined }));
+    const dash = this.select.value === "amplitude" ? [6, 4] : undefined;
+    const lines = curves.contacts.map((contact, k) => ({ x, y: row(curves[name], k), width: 2, name: contact, colour: massColour(k % DRAWN), dash }));
     if (this.select.value !== "amplitude") return lines;
     const masses = Math.min(curves.amplitude.shape[0], DRAWN);
     return [...Array.from({ length: masses }, (_, k) => ({ x, y: row(curves.amplitude, k), colour: massColour(k), width: 1.5, name: masses === 1 ? "mass" : `x${curves.dofs[k]}` })), ...lines];

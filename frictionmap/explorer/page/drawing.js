@@ -68,7 +68,7 @@ export class Drawing {
     this.motion = motion;
     this.length = motion.tau.length;
     const { rows, names } = (this.about = motion.drawing);
-    this.states = motion.states ?? motion.direction;
+    this.states = motion.states;
     const moving = this.about.base ? REACH : 0; // room of the base on its way
     const room = WIDTH - 2 * SIDE - REACH - moving;
     this.pitch = Math.min(PITCH, room / rows.length);
@@ -253,7 +253,7 @@ export class Drawing {
   }
 
   #stretch(k) {
-    return (place) => (this.motion.stretched ? sampled(this.motion.stretched, place, k * this.length) : 0);
+    return (place) => sampled(this.motion.stretched, place, k * this.length);
   }
 
   /** Places of contacts that share a mass, side by side or one above the other. */

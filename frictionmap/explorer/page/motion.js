@@ -14,6 +14,7 @@ const REGIMES = {
   permanent_sticking: "Permanent sticking",
   stick_slip: "Stick-slip",
   continuous: "Continuous sliding",
+  one_way_sliding: "One-way sliding",
 };
 
 /** Words under the motion that the page opens with. */
@@ -97,7 +98,7 @@ export class MotionPanel {
     if (kind === "example") this.#part(".words").append(make("p", { className: "hint" }, `${HINT} `, tourButton()));
     this.#part(".live").hidden = none;
     if (!none) this.#enliven();
-    const several = !none && motion.contacts?.length > 0;
+    const several = !none && motion.contacts.length > 0;
     for (const figure of this.panel.querySelectorAll(".moves")) figure.hidden = none || several;
     this.#part(".contacts").hidden = !several;
     if (several) this.#layOutContacts();
@@ -185,7 +186,7 @@ export class MotionPanel {
   draw() {
     if (!this.motion?.tau) return;
     this.moment.clear();
-    if (this.motion.contacts?.length) {
+    if (this.motion.contacts.length) {
       drawContacts(this.#part(".contacts"), this.motion, this.moment);
       this.player.show();
       return;
@@ -242,7 +243,7 @@ export class MotionPanel {
     const names = [];
     for (let k = 0; k < masses; k += 1) names.push(keyLine(massColour(k), masses === 1 ? "x, mass" : `x${motion.dofs[k]}`));
     names.push(keyLine(ink, "z, contact", masses === 1 ? "dotted" : "solid"), keyLine(colour("warm"), "friction"));
-    if (bands.length) names.push(keyLine(colour("stop"), motion.still?.[0] ?? "stuck", "solid", 9));
+    if (bands.length) names.push(keyLine(colour("stop"), motion.still[0], "solid", 9));
     if (other) names.push(keyLine(colour("second"), other.start === "moving" ? "from sliding" : "from rest", "dashed"));
     return names;
   }

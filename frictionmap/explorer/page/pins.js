@@ -116,11 +116,11 @@ export class Pins {
 
   /** What any of the designs has changed: contact and sliders. */
   #changed(pins) {
-    const { contacts, sliders, general } = this.scene;
+    const { contacts, sliders, placed } = this.scene;
     const changed = sliders.filter(({ key }) => pins.some(({ view }) => key in view.numbers));
     const rows = changed.map(({ key, label, value }) => [label, pins.map(({ view }) => short(view.numbers[key] ?? value))]);
     const first = contacts[0].key;
-    if (!general && pins.some(({ view }) => view.contact !== first)) {
+    if (placed && pins.some(({ view }) => view.contact !== first)) {
       rows.unshift(["contact", pins.map(({ view }) => contacts.find(({ key }) => key === view.contact).label)]);
     }
     return rows;

@@ -1,0 +1,94 @@
+"""Sliders of a page: numbers of a system that can be changed."""
+
+from ..model.contact import Contact
+from ..model.general import contacts_of
+from ..model.system import System
+from .contacts import damped_alike
+from .scene_parts import Slider
+
+#: Numbers of a kind up to which each has a slider; beyond it a list is no choice any more.
+_OFFERED = 8
+
+#: Ratios of a slider to the value that it begins with; where a slider for mu, zeta and friction ends, at
+#: least.
+_RATIO, _MOST_MU, _MOST_ZETA, _MOST_FRICTION = 10.0, 3.0, 1.0, 2.0
+
+
+def sliders_of(system: System, mu: float) -> tuple[Slider, ...]:
+    """Numbers that can be changed, the most important ones first: two of them are stored together."""
+    return (*_mu(system, mu), *_damping(system), *_contacts(system), *_ratios(system))
+
+
+def _upward(
+    key: str, label: str, ends: tuple[float, float], value: float, unit: str, scale: str = "linear",
+    measure: str = "",
+) -> Slider:  # fmt: skip
+    """A slider to the largest number that is usual, or further if the value is large."""
+    return Slider(key, label, ends[0], max(ends[1], 2.0 * value), value, scale, unit, measure)
+
+
+def _scaled(key: str, label: str, value: float, unit: str) -> Slider:
+    """A slider from a small share of a number to a large multiple of it."""
+    return Slider(key, label, value / _RATIO, value * _RATIO, value, "log", unit)
+
+
+def _mu(system: System, mu: float) -> tuple[Slider, ...]:
+    """None for springs alone, which would jump at break-away."""
+    if system.contact_system.elastic.all():
+        return ()
+    return (_upward("mu", "μ", (1.0, _MOST_MU), mu, "times the kinetic friction"),)
+
+
+def _damping(system: System) -> tuple[Slider, ...]:
+    given = system.damping_ratios
+    if given is None:  # a matrix C
+        return ()
+    ratios = tuple(given)  # type: ignore[arg-type]
+    alike = damped_alike(system)
+    if not alike and len(ratios) > _OFFERED:
+        return ()
+    keys = ("damping_ratios",) if alike else tuple(f"damping_ratios[{k + 1}]" for k in range(len(ratios)))
+    of_one = system.n == 1
+    labels = ("ζ" if of_one else "ζ of all modes",) if alike else tuple(f"ζ{k + 1}" for k in range(system.n))
+    return tuple(
+        _upward(key, label, (0.0, _MOST_ZETA), value, "of critical damping", "square")
+        for key, label, value in zip(keys, labels, ratios, strict=False)
+    )
+
+
+def _contacts(system: System) -> tuple[Slider, ...]:
+    """Friction, springs and belts of the contacts."""
+    given, alone = contacts_of(system), system.contacts is None
+    found: list[Slider] = []
+    for k, contact in enumerate(given, 1):
+        key, name = ("", "") if alone else (f"contacts[{k}].", f", {contact.label}")
+        found += _friction(contact, key, name, several=len(given) > 1)
+        if isinstance(contact.stiffness, float):
+            own, label = ("contact_", "contact stiffness kt / k1") if alone else ("", f"kt / k1{name}")
+            found.append(_scaled(f"{key}{own}stiffness", label, contact.stiffness, "times k1"))
+        if contact.wall_velocity > 0.0:
+            label = "wall velocity v / (ωP/k1)" if alone else f"wall velocity{name}"
+            found.append(_scaled(f"{key}wall_velocity", label, contact.wall_velocity, "times ωP/k1"))
+    return tuple(found)
+
+
+def _friction(contact: Contact, key: str, name: str, *, several: bool) -> list[Slider]:
+    """Friction of a contact of a list: its force, or its ratio to that of the others."""
+    ends = (0.0, _MOST_FRICTION)
+    if isinstance(contact.force, float):
+        label = f"friction F / P{name}"
+        return [_upward(f"{key}force", label, ends, contact.force, "times P", measure="force")]
+    if contact.force is None and several and not isinstance(contact.ratio, tuple):
+        return [_upward(f"{key}ratio", f"friction over β{name}", ends, contact.ratio or 0.0, "times β")]
+    return []
+
+
+def _ratios(system: System) -> tuple[Slider, ...]:
+    """Masses and springs of a chain, over those of the first mass."""
+    if system.matrices is not None or not 1 < system.n <= _OFFERED:
+        return ()
+    return tuple(
+        _scaled(f"{key}[{k}]", f"{letter}{k} / {letter}1", value, f"times {letter}1")
+        for key, letter in (("mass_ratios", "m"), ("stiffness_ratios", "k"))
+        for k, value in enumerate(getattr(system, key)[1:], start=2)
+    )

@@ -130,9 +130,7 @@ def system_text(system: "System") -> str:
 
 def _system_lines(system: "System", file: str) -> list[str]:
     matrices = system.matrices
-    own = {key: getattr(system, key) for key in _SYSTEM}
-    if system.general is not None:
-        own |= _general_keys(system)
+    own = {key: getattr(system, key) for key in _SYSTEM} | _contacts_and_loads(system)
     own["load"] = own.pop("loads")  # for a reduced structure, on the remaining masses
     if system.reduction is not None:  # r refers to the full structure, not to the matrices below
         own["frequency_scale"] = system.omega_1
@@ -152,10 +150,8 @@ def _system_lines(system: "System", file: str) -> list[str]:
     return [*lines, f"matrices = {value_text(table)}"]
 
 
-def _general_keys(system: "System") -> dict[str, object]:
-    """Keys of [system] that take the place of others where there are several contacts or harmonics."""
-    general = system.general
-    assert general is not None
+def _contacts_and_loads(system: "System") -> dict[str, object]:
+    """Keys of [system] for springs, belts, normal loads, several contacts and several harmonics."""
     found: dict[str, object] = {}
     if system.contacts is not None:
         found |= {"contact": None, "contact_masses": (1,)}
@@ -169,14 +165,14 @@ def _general_keys(system: "System") -> dict[str, object]:
         numbers = system.dofs.numbers
         entries = [
             {"n": n, "mass": int(numbers[row]), "re": value.real, "im": value.imag}
-            for n, vector in general.forces.items()
+            for n, vector in system.contact_system.forces.items()
             for row, value in enumerate(vector.tolist())
             if value != 0.0
         ]
-        entries += [{"n": n, "re": u.real, "im": u.imag} for n, u in general.base.items()]
+        entries += [{"n": n, "re": u.real, "im": u.imag} for n, u in system.contact_system.base.items()]
         found |= {"load_harmonics": entries, "load_mass": 1}
     if system.load_offset is not None:
-        found["load_offset"] = general.offset.tolist()
+        found["load_offset"] = system.contact_system.offset.tolist()
     return found
 
 

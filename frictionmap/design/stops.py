@@ -6,14 +6,13 @@ some phases of the load, and where they are found at the least friction that is 
 No proof says that none is missed.
 """
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from .. import checks
 from ..general.resting_starts import Places, stops_of
-from ..model.general import contacts_of
+from ..model.general import in_general_form
 from ..model.system import System
 from .band import Band
 from .grading import graded, no_stop_poles
@@ -83,8 +82,7 @@ class _Search(NamedTuple):
         From one phase to the next the direction of friction changes; from one point to the next the phases
         move on, so that neighbours complement one another.
         """
-        assert self.system.general is not None
-        shape = (r.size, self.system.general.count, count)
+        shape = (r.size, self.system.contact_system.count, count)
         point, contact, step = np.indices(shape).reshape(3, -1)
         phase = 2.0 * np.pi * (step + point * _GOLDEN % 1.0) / count
         return Places(r[point], beta[point], phase, contact, 1.0 - 2.0 * (step % 2))
@@ -144,7 +142,7 @@ def least_with_stops(system: System, band: Band, mu: float) -> tuple[Extreme, Ex
     some, points = least_no_stop(system, band, mu)
     if not starts_matter(system, mu) or not 0.0 < some.beta < np.inf:
         return some, some, points
-    search = _Search(system if system.general else replace(system, contacts=contacts_of(system)), mu)
+    search = _Search(in_general_form(system), mu)
     r = graded(band, no_stop_poles(search.system, band.low), _SHARE)
     r = r[np.interp(r, *points) <= _FAR * some.beta]
     found = search.lowest(r, (1.0 - _CLOSE) * some.beta * _STEP ** np.arange(_LEVELS))

@@ -10,6 +10,7 @@ from .. import checks
 from ..errors import InputError
 from ..features import peak_thresholds
 from ..model.system import System
+from ..solvers.choose import has_closed_forms
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales, Units, scales_of
 from .band import Band, checked_band, peak_samples
@@ -127,7 +128,7 @@ def range_of_friction(system: System, band: Band, spread: float = 0.0) -> tuple[
 def _least_friction(system: System, band: Band, high: float) -> float:
     """Friction below which a response without damping is infinite at a resonance of the band, T(6.2)."""
     modes = system.modes
-    if system.general is not None or modes.damping.any():
+    if modes.damping.any() or not has_closed_forms(system):
         return 0.0
     inside = (modes.w >= band.low) & (modes.w <= band.high)
     thresholds = peak_thresholds(system)[inside]

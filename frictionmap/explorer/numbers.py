@@ -60,16 +60,16 @@ _OF_ALL = (
 
 
 def numbers_of(view: View, values: Values, limits: Values) -> tuple[list[Number], np.ndarray]:
-    """The list of a cell: of every contact that is shown, of the masses, of all; without what is unknown.
+    """The list of a cell: of every contact that is shown, of the masses, of all; without unknown ones.
 
     limits : the boundaries at its frequency
     """
     known = {**values, **limits}
-    found = [*_of_contacts(view, known), *_of_masses(view, known), *_of_all(view, known)]
+    found = [*_contact_numbers(view, known), *_mass_numbers(view, known), *_common_numbers(view, known)]
     return [number for number, _ in found], np.array([value for _, value in found])
 
 
-def _of_contacts(view: View, values: Values) -> Iterator[tuple[Number, float]]:
+def _contact_numbers(view: View, values: Values) -> Iterator[tuple[Number, float]]:
     groups = view.system.contact_system.groups
     for j in range(len(groups)) if view.shown is None else [view.shown]:
         group = groups[j].name if len(groups) > 1 else ""
@@ -81,11 +81,11 @@ def _of_contacts(view: View, values: Values) -> Iterator[tuple[Number, float]]:
 
 
 def _whole(view: View) -> str:
-    """Heading of what is not of one contact."""
+    """Heading of the numbers that belong to no single contact."""
     return "masses and all contacts" if view.system.contact_system.count > 1 else ""
 
 
-def _of_masses(view: View, values: Values) -> Iterator[tuple[Number, float]]:
+def _mass_numbers(view: View, values: Values) -> Iterator[tuple[Number, float]]:
     dofs = view.system.dofs.numbers
     for number in _OF_MASS:
         for row, value in enumerate(values.get(number.name, np.empty(0))[:_LISTED].tolist()):
@@ -105,7 +105,7 @@ def _reason_for_no_lag(values: Values, k: int) -> str:
     return f"held at its maximum from {begin} to {end} rad"
 
 
-def _of_all(view: View, values: Values) -> Iterator[tuple[Number, float]]:
+def _common_numbers(view: View, values: Values) -> Iterator[tuple[Number, float]]:
     for number in _OF_ALL:
         value = float(values[number.name].item()) if number.name in values else np.nan
         if not np.isnan(value):

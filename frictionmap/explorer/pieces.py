@@ -35,14 +35,14 @@ def solve_piece(
     asked = (quantity.output for quantity in wanted if quantity.output)
     names = tuple(dict.fromkeys((*filter(None, (by,)), *asked)))
     solved, limits = view.engine.cells(axes, names, view.solver, None, follower.progress, follower.watch)
-    found = {name: _of_shown(name, solved[name][0], k) for name in names}  # of the only mu
+    found = {name: _shown_values(name, solved[name][0], k) for name in names}  # of the only mu
     found["regime"] = solved["regime"][0] if k is None else solved["contact_regime"][0, ..., k]
     if by:
         found["stops_per_cycle"] = found[by]
     return found | values_of_lines(view, limits)
 
 
-def _of_shown(name: str, values: np.ndarray, k: int | None) -> np.ndarray:
+def _shown_values(name: str, values: np.ndarray, k: int | None) -> np.ndarray:
     """Values of contact k, or the sum of all; those that are not of contacts as they are."""
     if name not in OF_CONTACTS:
         return values

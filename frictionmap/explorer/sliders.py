@@ -78,8 +78,8 @@ def _friction(contact: Contact, key: str, name: str, *, several: bool) -> list[S
     if isinstance(contact.force, float):
         label = f"friction F / P{name}"
         return [_upward(f"{key}force", label, ends, contact.force, "times P", measure="force")]
-    if contact.force is None and several and not isinstance(contact.ratio, tuple):
-        return [_upward(f"{key}ratio", f"friction over β{name}", ends, contact.ratio or 0.0, "times β")]
+    if contact.force is None and several and isinstance(contact.ratio, float):
+        return [_upward(f"{key}ratio", f"friction over β{name}", ends, contact.ratio, "times β")]
     return []
 
 

@@ -7,6 +7,7 @@ from ..model.contact import checked_contacts
 from ..model.general import ContactSystem
 from ..model.settings import Solver
 from ..model.system import System
+from ..solvers.choose import has_closed_forms
 from .config import parse, system_in
 
 
@@ -18,16 +19,13 @@ def stored_system(ds: xr.Dataset) -> System | None:
     its resonant peaks and invariant points, is known for one rigid contact under one harmonic load.
     """
     system = system_in(str(ds.attrs.get("config", "")))
-    return None if system is None or system.general is not None else system
+    return system if system is not None and has_closed_forms(system) else None
 
 
-def stored_general(ds: xr.Dataset) -> ContactSystem | None:
-    """Contacts and loads of a system with several contacts, springs, belts or harmonics, from `config`.
-
-    None of other systems, and where `config` does not say.
-    """
+def stored_contacts(ds: xr.Dataset) -> ContactSystem | None:
+    """Contacts and loads of the system of a dataset, from `config`; None where that does not say."""
     system = system_in(str(ds.attrs.get("config", "")))
-    return None if system is None else system.general
+    return None if system is None else system.contact_system
 
 
 def has_equal_friction(ds: xr.Dataset, mu: float) -> bool:

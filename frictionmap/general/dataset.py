@@ -163,7 +163,7 @@ def cell_arrays(
     cells = solve_cells(
         system, axes, limits.beta_stick, solver, threads, progress, watch, masses, bool(placed & set(names))
     )
-    found = {}
+    found: dict[str, np.ndarray] = {}
     for name in names:
         values_of = contact_values if name in PER_CONTACT else cell_values
         found[name] = values_of(name, system, cells).astype(LABELS[name].dtype, copy=False)

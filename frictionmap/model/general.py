@@ -7,8 +7,8 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Protocol
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -30,6 +30,9 @@ from .periodic_load import (
     scalar_harmonics,
     waveform,
 )
+
+if TYPE_CHECKING:
+    from .system import System
 
 #: Keys of a system that only this engine takes.
 KEYS = (
@@ -231,6 +234,11 @@ def contacts_of(system: Definition) -> tuple[Contact, ...]:
         "normal_load": system.normal_load,
     }  # fmt: skip
     return (Contact(system.contact, system.contact_masses, **own),)
+
+
+def in_general_form(system: "System") -> "System":
+    """A system in the form that the general engine takes: with a list of contacts if it takes no other."""
+    return replace(system, contacts=contacts_of(system)) if system.general is None else system
 
 
 def check_contacts(system: Definition) -> tuple[Contact, ...] | None:

@@ -100,13 +100,13 @@ class GeneralEngine(Engine):
     ) -> "xr.Dataset":  # fmt: skip
         from ..general.curves import general_curves
 
-        def told(done: int, total: int) -> None:
+        def report(done: int, total: int) -> None:
             if watch is not None:
                 watch()
             if progress is not None:
                 progress(done, total)
 
-        return general_curves(self.system, axes, solver, asked, told)
+        return general_curves(self.system, axes, solver, asked, report)
 
     def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
         from ..general.response import general_response

@@ -152,7 +152,7 @@ class Engine(ABC):
         """
 
     def traced(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> Motion:
-        """The same as arrays."""
+        """One steady state in time as arrays, see `motion`."""
         ds = self.motion(r, beta, mu, solver, points)
         several = "contact" in ds.dims
         values = {

@@ -9,7 +9,7 @@ import numpy as np
 from .. import regimes
 from ..datasets.labels import PER_CONTACT
 from ..jobs import Progress, Watch
-from ..model.general import contacts_of
+from ..model.general import in_general_form
 from ..model.settings import OUTPUTS, CurveSettings, Solver
 from ..model.sizes import Sizes, Wanted
 from ..theory.boundary_curves import Curves, find_curves, least_ratio
@@ -156,7 +156,7 @@ class SingleEngine(Engine):
             return found
         from .general import GeneralEngine
 
-        twin = GeneralEngine(replace(self.system, contacts=contacts_of(self.system)))
+        twin = GeneralEngine(in_general_form(self.system))
         axes = {"mu": mu, "r": at[0][which], "beta": at[1][which][:, np.newaxis]}
         size = found.size.copy()
         size[which] = twin.sizes_on_grid(wanted, axes, solver, threads, watch).size[:, 0]

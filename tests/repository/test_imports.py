@@ -4,6 +4,7 @@ import ast
 import importlib
 import os
 import pkgutil
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -188,3 +189,12 @@ def test_lazy_names_are_public_and_listed_once():
 def test_an_unknown_name():
     with pytest.raises(AttributeError, match=r"module 'frictionmap' has no attribute 'sweeep'"):
         fm.sweeep  # noqa: B018
+
+
+def test_one_place_decides_which_engine_answers():
+    """All else asks the engine, or the contacts and loads in the one form that every system has."""
+    asking = re.compile(r"\.general is (not )?None|\b(if|else|not|and|or) \w*system\.general\b")
+    found = {
+        path.relative_to(PACKAGE).as_posix() for path in SOURCES if asking.search(path.read_text("utf-8"))
+    }
+    assert found == {"solvers/choose.py", "model/general.py", "general/problem.py"}

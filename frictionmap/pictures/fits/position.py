@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from ...files.config import system_in
 from ...model.settings import GeneralOutput, Output
 from ...model.system import System
+from ...solvers.choose import has_closed_forms
 from ...steady.sweep import sweep
 from ..curves.axes import Panel
 from ..maps.regime_map import cells_of, draw_map
@@ -41,7 +42,7 @@ def fitted_system(ds: xr.Dataset) -> System | None:
     if system is None:
         return None
     system = replace(system, contact_stiffness=None)
-    if system.general is not None:
+    if not has_closed_forms(system):
         return None
     if not system.modes.zeta.any() and "zeta" in ds["parameter"].values:
         system = replace(system, damping_ratios=max(fitted(ds, "zeta", 0.0), 0.0))
@@ -69,9 +70,8 @@ def position_panel(system: System, mu: float, positions: list[Positions]) -> Pan
     )
 
     def position(ax: Axes) -> list[Handle]:
-        count: Output | GeneralOutput = (
-            "stops_per_cycle" if system.general is None else "slip_reversals_per_cycle"
-        )
+        elastic = system.contact_system.elastic.any()
+        count: Output | GeneralOutput = "slip_reversals_per_cycle" if elastic else "stops_per_cycle"
         panel = sweep(system, r, beta, mu, outputs=["regime", count]).isel(mu=0)
         cells = cells_of(panel)
         handles = draw_map(ax, panel, cells)

@@ -199,5 +199,4 @@ def _system(ds: xr.Dataset) -> System | None:
         config = config_of(str(ds.attrs.get("config", "")), {})
     except InputError:
         return None
-    system = config.system if config is not None else None
-    return system if system is not None and system.general is not None else None
+    return config.system if config is not None else None

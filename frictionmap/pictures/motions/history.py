@@ -12,7 +12,6 @@ from matplotlib.patches import Patch
 from ... import regimes
 from ...datasets.labels import regime_of_choice
 from ...errors import InputError
-from ...files.stored import stored_general
 from ..drawing import with_options
 from ..marks import spread
 from ..options import FigureOptions, current
@@ -23,7 +22,7 @@ from ..shapes import check_holds, check_range, to_draw
 from ..sizes import points
 from ..words import caption, load_of, moves_base, name_of_contact
 from .loops import draw_loop
-from .traces import Trace, levels_of, load_trace, traces_of
+from .traces import Trace, is_cosine, levels_of, load_trace, traces_of
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -100,7 +99,7 @@ def _maxima(ds: xr.Dataset, load: np.ndarray) -> np.ndarray:
     The phase of every load of one harmonic is counted from its maximum.
     """
     turns = ds["tau"].values / np.pi
-    if "load" not in ds and stored_general(ds) is None:
+    if is_cosine(ds):
         return np.arange(2.0 * np.ceil(turns[0] / 2.0 - 1e-9), turns[-1] + 1e-9, 2.0)
     if np.ptp(load) <= _ROUNDING:
         return np.empty(0)

@@ -1,11 +1,12 @@
 """Motion of every contact in time, its stops and the levels of its friction force."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from ...files.stored import stored_general
+from ...files.stored import stored_contacts
 from ..palette import LINES
 from ..words import name_of_contact
 
@@ -75,10 +76,10 @@ class Levels(NamedTuple):
 def levels_of(ds: xr.Dataset, trace: Trace) -> Levels | None:
     """Friction levels of a contact; None for one of several in a file without its system."""
     beta, mu = float(ds["beta"]), float(ds["mu"])
-    general = stored_general(ds)
-    if general is None or trace.number > len(general.groups):
+    contacts = stored_contacts(ds)
+    if contacts is None or trace.number > contacts.count:
         return None if trace.number else Levels(beta, mu * beta, None)
-    group = general.groups[max(trace.number, 1) - 1]
+    group = contacts.groups[max(trace.number, 1) - 1]
     kinetic, static = group.friction(beta, mu)
     tau = ds["tau"].values
     normal = [(phasor * np.exp(1j * n * tau)).real for n, phasor in group.first.nu.items()]
@@ -89,8 +90,18 @@ def load_trace(ds: xr.Dataset) -> np.ndarray:
     """Load over tau, or the motion of the base that stands in its place."""
     if "load" in ds:
         return ds["load"].values
-    general = stored_general(ds)
     tau = ds["tau"].values
-    if general is None or not general.base:
+    if is_cosine(ds):
         return np.cos(tau)
-    return np.sum([(phasor * np.exp(1j * n * tau)).real for n, phasor in general.base.items()], axis=0)
+    return np.sum([(phasor * np.exp(1j * n * tau)).real for n, phasor in _base_of(ds).items()], axis=0)
+
+
+def is_cosine(ds: xr.Dataset) -> bool:
+    """Whether cos tau stands for the load, whose phase is then counted from its maximum."""
+    return "load" not in ds and _base_of(ds) == {1: 1.0}
+
+
+def _base_of(ds: xr.Dataset) -> Mapping[int, complex]:
+    """Harmonics of the base motion; cos tau where no base moves, and where the system is not known."""
+    contacts = stored_contacts(ds)
+    return (contacts.base if contacts is not None else {}) or {1: 1.0}

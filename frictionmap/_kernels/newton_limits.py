@@ -6,6 +6,10 @@ from .compiler import kernel
 
 MAX_NEWTON = 16  # steps
 
+#: Steps below this share of the motion are rounding error, 2^-53; the second number: of many masses, whose
+#: steps solve linear equations and have the rounding error of some operations.
+ROUNDING, ROUNDING_OF_MANY = 1e-16, 1e-15
+
 #: Newton steps below this share of the motion must shrink quadratically.
 NEAR_END = 1e-6
 
@@ -22,4 +26,4 @@ def next_step_negligible(move, last, miss, scale, tolerance):
     convergence cannot be predicted.
     """
     expected = move * (move / last) ** 2 if last < math.inf else move
-    return expected <= 1e-16 * scale and 1e-16 * move <= tolerance * miss
+    return expected <= ROUNDING * scale and ROUNDING * move <= tolerance * miss

@@ -62,7 +62,7 @@ def _miss(a, square, n, sum_, product):
 
 
 @kernel
-def _of_two(a, square, n, power):
+def _rank_two_radius(a, square, n, power):
     """Spectral radius of a matrix of norm 1 if all but two eigenvalues are negligible, else -1.
 
     Every eigenvalue x is such that |x (x - x1) (x - x2)| is at most `_miss`, with x1 and x2 the roots of
@@ -119,9 +119,9 @@ def spectral_radius(matrix, n, a, precision):
                 a[i, j] = matrix[i, j] / norm
         _square(a, n, matrix)
         if precision == 0.0:
-            of_two = _of_two(a, matrix, n, power)
-            if of_two > 0.0:
-                return math.exp((log + math.log(of_two)) / power)
+            radius = _rank_two_radius(a, matrix, n, power)
+            if radius > 0.0:
+                return math.exp((log + math.log(radius)) / power)
         log *= 2.0
         power *= 2.0
     return last

@@ -96,13 +96,14 @@ def general_curves(
                 f"harmonics; valid quantities: {', '.join(_OFFERED)}"
             )
     mu, r, beta = axes["mu"], axes["r"], axes["beta"]
-    refuse_static(general_of(system), mu)
+    general = general_of(system)
+    refuse_static(general, mu)
     if r[0] == 0.0:
         raise InputError("r", "must be > 0 for response curves of such systems; got 0")
-    count = general_of(system).count
+    count = general.count
     limits = find_boundaries(system, r, mu)
     problem, modal = problem_of(system, r)
-    unique = [general_of(system).has_equal_friction(float(value)) for value in mu]
+    unique = [general.has_equal_friction(float(value)) for value in mu]
     shape = (mu.size, r.size, beta.size)
     tables: dict[str, np.ndarray] = {}
     for done, (m, i, b) in enumerate(np.ndindex(shape), 1):
@@ -127,9 +128,7 @@ def general_curves(
         if new in tables:
             tables[old] = tables[new]
     variables = {
-        name: _variable(name, values, count)
-        for name, values in tables.items()
-        if is_wanted(name, general_of(system))
+        name: _variable(name, values, count) for name, values in tables.items() if is_wanted(name, general)
     }
     coords = {name: coordinate(name, values) for name, values in axes.items()} | contact_coordinates(system)
     return xr.Dataset(variables | boundary_variables(system, limits), coords=coords)

@@ -23,8 +23,13 @@ _REFINED = 8
 #: Steps to a boundary with a varying normal load.
 _MOST_STEPS = 60
 
-#: A pivot below this, relative to the stiffness, is a resonance of the held structure.
-_RESONANT = 1e-14
+#: Rounding error of the linear equations, some hundred times 2^-53: a pivot below this share of the stiffness
+#: is a resonance of the held structure, and a force below this share of the largest one is zero.
+_ROUNDING = 1e-14
+
+#: Friction above this, over the unit of the load, is infinite: the normal load of the contact vanishes at an
+#: instant at which the contact is loaded, or is rounding error there.
+_ENDLESS = 1e12
 
 
 def _linear(
@@ -74,7 +79,7 @@ def held_forces_of(
         u = general.base.get(order, 0.0)
         right[:, :n] += u * (vectors.T * kt) @ moved
         right[:, n:] = u * moved[~elastic]
-        found = solved(matrix, right)
+        found = solve_each(matrix, right)
         x = found[:, :n]
         force = np.empty((r.size, which.size), dtype=complex)
         force[:, ~elastic] = found[:, n:]
@@ -111,7 +116,7 @@ def sliding_phasors(system: System, r: np.ndarray) -> np.ndarray:
     moved = np.array([float(group.base) for group in general.groups])
     found = []
     for order in orders_of(general):
-        x = solved(*_linear(system, system.modes.stiffness, order, r))
+        x = solve_each(*_linear(system, system.modes.stiffness, order, r))
         with np.errstate(invalid="ignore"):  # an infinite x
             found.append(x @ general.vectors.T - general.base.get(order, 0.0) * moved)
     return np.stack(found, axis=-1)
@@ -133,7 +138,7 @@ def belt_limit(system: System, r: np.ndarray) -> np.ndarray:
     return np.where(grows, np.inf, found)
 
 
-def _one_solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+def _solve_one(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Solve for one r; inf where the matrix is singular."""
     try:
         return np.linalg.solve(matrix, right)
@@ -141,16 +146,16 @@ def _one_solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
         return np.full_like(right, np.inf)
 
 
-def solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+def solve_each(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Solve for every r; inf where the matrix is singular to rounding."""
     try:
         found = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
     except np.linalg.LinAlgError:  # one of them is singular
-        found = np.stack([_one_solved(*one) for one in zip(matrix, right, strict=True)])
+        found = np.stack([_solve_one(*one) for one in zip(matrix, right, strict=True)])
     size = np.abs(matrix).max(axis=(1, 2))
     with np.errstate(invalid="ignore"):
         load = np.abs(right).max(axis=1)
-        found[np.abs(found).max(axis=1) * size > load / _RESONANT] = np.inf
+        found[np.abs(found).max(axis=1) * size > load / _ROUNDING] = np.inf
     return found
 
 
@@ -190,8 +195,7 @@ def half_range(forces: Mapping[int, np.ndarray]) -> np.ndarray:
 def _least_friction(forces: Mapping[int, np.ndarray], normal: Mapping[int, complex], j: int) -> np.ndarray:
     """Least static friction f of contact j with max(F - f nu) <= min(F + f nu), (n_r,).
 
-    The sum max(F - f nu) + max(-F - f nu) is convex in f and falls: Newton steps from the left never pass its
-    zero.
+    The sum max(F - f nu) + max(-F - f nu) falls with f: its zero is found by bisection.
     """
     orders = sorted({*forces, *normal})
     n = np.array(orders, dtype=float)
@@ -208,16 +212,13 @@ def _least_friction(forces: Mapping[int, np.ndarray], normal: Mapping[int, compl
 
     low = np.zeros(len(load))
     high = 0.5 * excess(low)
-    while (excess(high) > 0.0).any():
-        grow = excess(high) > 0.0
+    while (grow := (excess(high) > 0.0) & (high <= _ENDLESS)).any():
         high = np.where(grow, 2.0 * high, high)
-        if (high > 1e12).any():
-            break
     for _ in range(_MOST_STEPS):
         middle = 0.5 * (low + high)
         above = excess(middle) > 0.0
         low, high = np.where(above, middle, low), np.where(above, high, middle)
-    return np.where(infinite | (high > 1e11), np.inf, high)
+    return np.where(infinite | (high > _ENDLESS), np.inf, high)
 
 
 def least_static_friction(system: System, r: np.ndarray) -> np.ndarray:
@@ -230,7 +231,7 @@ def least_static_friction(system: System, r: np.ndarray) -> np.ndarray:
             found[:, j] = _least_friction(forces, group.first.nu, j)
         if group.first.wall_velocity:
             found[:, j] = np.inf
-    zero = 1e-14 * np.where(np.isfinite(found), found, 0.0).max(axis=1, initial=0.0)
+    zero = _ROUNDING * np.where(np.isfinite(found), found, 0.0).max(axis=1, initial=0.0)
     return np.where(found <= zero[:, np.newaxis], 0.0, found)
 
 

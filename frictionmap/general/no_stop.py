@@ -10,7 +10,7 @@ from .._kernels.general.reach import Search
 from ..jobs import Job, Watch, run_jobs
 from ..model.system import System
 from .closed_limits import closed_limits, has_closed_limits
-from .held import orders_of, rest_scales, sliding_phasors, solved
+from .held import orders_of, rest_scales, sliding_phasors, solve_each
 from .problem import ModalSystem, general_of, problem_of
 
 #: Where the boundary to sticking is infinite: beta up to which stops are looked for, over the scale.
@@ -61,7 +61,7 @@ def linear_states(problem: Problem, r: np.ndarray, wall: float) -> tuple[np.ndar
         matrix = (
             np.diag(problem.squares) - turn**2 * np.eye(problem.squares.size) + 1j * turn * problem.damping
         )
-        modes = solved(matrix, load)
+        modes = solve_each(matrix, load)
         found += np.stack((modes.real, -n * modes.imag), axis=1)
     size = np.abs(found).max(axis=(1, 2))
     grows = ~(size <= _TALL * problem.sizes)  # also where it is not finite

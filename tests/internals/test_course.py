@@ -43,31 +43,43 @@ ROWS = {"stops": STOPS, "turns": TURNS, "stuck": STUCK, "slips": SLIPS, "reversa
 
 
 @own_entry
-def settle(problem, friction, start, tools):
+def settle(problem, friction, start, workspace):
     """Find the steady state; the row of the problem is filled."""
-    problem, friction, tools = packed(problem), packed(friction), packed(tools)
-    row, work, memory, kept = tools.row, tools.work, tools.memory, tools.record
+    problem, friction, workspace = packed(problem), packed(friction), packed(workspace)
+    row, motion, memory, kept = workspace.row, workspace.motion, workspace.memory, workspace.record
     set_row(problem, 0, row)
-    steady.from_rest(problem, row, friction, start, work, memory, kept, record.NOTHING)
-    return steady.find(problem, row, friction, 2000.0, 1e-12, work, memory, tools.ring, kept, tools.course)
+    steady.from_rest(problem, row, friction, start, motion, memory, kept, record.NOTHING)
+    return steady.find(
+        problem, row, friction, 2000.0, 1e-12, motion, memory, workspace.ring, kept, workspace.course
+    )
 
 
 @own_entry
-def measure(problem, friction, halves, tools):
+def measure(problem, friction, halves, workspace):
     """Follow one period of the motion into the counters and the record."""
-    problem, friction, tools = packed(problem), packed(friction), packed(tools)
-    memory, kept = tools.memory, tools.record
-    steady.measure(problem, tools.row, friction, halves, tools.work, memory, kept, tools.ring, record.RANGES)
+    problem, friction, workspace = packed(problem), packed(friction), packed(workspace)
+    memory, kept = workspace.memory, workspace.record
+    steady.measure(
+        problem,
+        workspace.row,
+        friction,
+        halves,
+        workspace.motion,
+        memory,
+        kept,
+        workspace.ring,
+        record.RANGES,
+    )
 
 
 @own_entry
-def average(problem, friction, periods, tools):
+def average(problem, friction, periods, workspace):
     """Follow twice as many periods again, and average over the window; return its half periods."""
-    problem, friction, tools = packed(problem), packed(friction), packed(tools)
-    work, memory, kept, course = tools.work, tools.memory, tools.record, tools.course
+    problem, friction, workspace = packed(problem), packed(friction), packed(workspace)
+    motion, memory, kept, course = workspace.motion, workspace.memory, workspace.record, workspace.course
     begin_course(periods, memory, kept, course)
     for cycle in range(periods, 3 * periods):
-        follow_cycle(problem, tools.row, friction, cycle, work, memory, tools.ring, kept, course)
+        follow_cycle(problem, workspace.row, friction, cycle, motion, memory, workspace.ring, kept, course)
     set_window(3 * periods, course)
     return take_window(course, memory.counts, kept)
 
@@ -80,18 +92,18 @@ def test_averages_of_a_periodic_motion(name):
     problem, modal = problem_of(system, np.array([0.45]))
     kinetic, static = friction_lines(system, np.array([1.0]))
     friction = Friction(kinetic @ [0.3, 1.0], static[0] @ [0.3, 1.0])
-    tools = steady.make_tools(problem, np.ascontiguousarray(modal.phi), 0)
-    memory, kept = tools.memory, tools.record
+    workspace = steady.make_workspace(problem, np.ascontiguousarray(modal.phi), 0)
+    memory, kept = workspace.memory, workspace.record
     start = rest_states(system, modal, np.array([0.45]))[0]
-    found = settle(problem, friction, start, tools)
+    found = settle(problem, friction, start, workspace)
     assert found.status == steady.REPEATS
     state, senses = memory.start.copy(), memory.senses.copy()
     whole = found.halves if found.halves % 2 == 0 else 2 * found.halves
-    measure(problem, friction, whole, tools)
+    measure(problem, friction, whole, workspace)
     wanted = counted(memory.counts, kept, whole, problem.spring > 0.0)
     memory.start[:], memory.senses[:] = state, senses
     periods = whole // 2
-    halves = average(problem, friction, periods, tools)
+    halves = average(problem, friction, periods, workspace)
     assert halves == 4 * periods
     averaged = counted(memory.counts, kept, halves, problem.spring > 0.0)
     assert sum(wanted["stops"]) + sum(wanted["slips"]) >= 2.0

@@ -5,6 +5,7 @@ import pytest
 from general_systems import KINDS, chain, phasors
 
 import frictionmap as fm
+from frictionmap.general import held
 from frictionmap.general.boundaries import find_boundaries
 
 #: r, ends of the rays (1, 0.3) and (1, 1) without stops, and with mu = 1.5; two masses, wall 1 and 1-2.
@@ -206,3 +207,11 @@ def test_curves_and_maps_of_a_held_spring_agree():
     for name in names:
         assert np.array_equal(curves[name], ds[name]), name
     assert abs(ds.contact_amplitude.item() - ds.amplitude.item()) > 0.1
+
+
+def test_friction_that_is_infinite_at_one_frequency_leaves_that_at_others():
+    """F = a sin tau and nu = 1 + (1 - e) cos tau: f = a/sqrt(1 - (1 - e)^2), infinite for a = 1e9."""
+    e = 1e-8
+    found = held._least_friction({1: np.array([[-1e9j], [-1j]])}, {1: 1.0 - e}, 0)
+    assert found[0] == np.inf
+    assert found[1] == pytest.approx(1.0 / np.sqrt(1.0 - (1.0 - e) ** 2), rel=1e-6)  # cancellation: eps/e

@@ -11,7 +11,7 @@ import pytest
 import frictionmap as fm
 from benchmarks.measures.own_entry import own_entry
 from frictionmap._kernels.compiler.packed import packed
-from frictionmap._kernels.general.problem import make_row, set_row
+from frictionmap._kernels.general.problem import H, make_row, set_row
 from frictionmap._kernels.general.record import make_record
 from frictionmap._kernels.general.return_map import make_return
 from frictionmap._kernels.general.single_mass import solve_single
@@ -126,7 +126,7 @@ def test_the_tables_solve_a_cell():
     motion = fm.response(system, r, beta)
     tau = motion.tau.values
     section = 0.37
-    h = row.numbers[0]
+    h = row.numbers[H]
     memory.start[0, 0] = np.interp(section, tau, motion.z.values) + 1e-4
     memory.start[1, 0] = h * np.interp(section, tau, motion.v.values[0])
     memory.senses[0] = int(np.sign(memory.start[1, 0]))

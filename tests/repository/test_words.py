@@ -92,7 +92,7 @@ NAMES_OF_FUNCTIONS = (
 
 #: Parts whose names and further texts are not checked; their docstrings and messages are.
 EXCEPTED = re.compile(
-    r"frictionmap/(_kernels/|identify/(time_series/|response/|joint_fit/parts\.py|explanations\.py)|general/held\.py)"
+    r"frictionmap/(identify/(time_series/|response/|joint_fit/parts\.py|explanations\.py))"
     r"|tests/limits/"
 )
 

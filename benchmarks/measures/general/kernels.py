@@ -14,7 +14,7 @@ from frictionmap._kernels.general.problem import set_row
 from frictionmap._kernels.general.record import NOTHING, RANGES
 from frictionmap._kernels.general.return_map import from_rest, steady_period
 from frictionmap._kernels.general.series import Friction
-from frictionmap._kernels.general.steady import REPEATS, find, make_tools, measure
+from frictionmap._kernels.general.steady import REPEATS, find, make_workspace, measure
 from frictionmap.general.boundaries import friction_lines, rest_states
 from frictionmap.general.held import least_static_friction, stick_scales
 from frictionmap.general.maps import allocate
@@ -55,23 +55,32 @@ class Found(NamedTuple):
 
 
 @own_entry
-def _solve_cells(problem, forces, starts, tools, friction, found):
+def _solve_cells(problem, forces, starts, workspace, friction, found):
     """Solve cells k = 0, 1, ... at r[k], each from rest and with its constants computed again."""
-    problem, tools, friction = packed(problem), packed(tools), packed(friction)
-    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    problem, workspace, friction = packed(problem), packed(workspace), packed(friction)
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     contacts = problem.spring.size
     for k in range(problem.r.size):
         set_row(problem, k, row)
         for j in range(contacts):
             friction.kinetic[j] = friction.static[j] = forces[k, j]
-        from_rest(problem, row, friction, starts[k], work, memory, record, NOTHING)
+        from_rest(problem, row, friction, starts[k], motion, memory, record, NOTHING)
         steady = find(
-            problem, row, friction, _CYCLES, _TOLERANCE, work, memory, tools.ring, record, tools.course
+            problem,
+            row,
+            friction,
+            _CYCLES,
+            _TOLERANCE,
+            motion,
+            memory,
+            workspace.ring,
+            record,
+            workspace.course,
         )
         if steady.status != REPEATS:
             continue
         halves, multiplier = measure(
-            problem, row, friction, steady.halves, work, memory, record, tools.ring, RANGES
+            problem, row, friction, steady.halves, motion, memory, record, workspace.ring, RANGES
         )
         if halves == 0:
             continue
@@ -87,9 +96,9 @@ def single_cells(system: fm.System, r: np.ndarray, forces: np.ndarray) -> tuple[
     problem, modal = problem_of(system, r)
     starts, count = rest_states(system, modal, r), forces.shape[1]
     found = Found(*(np.full(shape, np.nan) for shape in ((r.size,), (r.size, count), (r.size, count))))
-    tools = make_tools(problem, np.empty((0, problem.squares.size)), 0)
+    workspace = make_workspace(problem, np.empty((0, problem.squares.size)), 0)
     friction = Friction(np.empty(count), np.empty(count))
-    return lambda: _solve_cells(problem, forces, starts, tools, friction, found), found
+    return lambda: _solve_cells(problem, forces, starts, workspace, friction, found), found
 
 
 def open_share(cells: Cells) -> np.ndarray:

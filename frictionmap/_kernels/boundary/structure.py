@@ -31,7 +31,7 @@ _DEEPEST = 40
 
 #: Rows of the table of modes that `mode_sums` fills, one column a mode: c, a = 1/R, zeta, and y_i = h_i',
 #: y_i' and y_i'' + y_i over (q, e) of `decay`.  Modes beside their resonance have no use for Y_E and P_Q,
-#: which hold u, but for delta = s a - 1 with s^2 = 1 - zeta^2, and u delta, u zeta and u (a - s); BESIDE is 1
+#: which hold u, except delta = s a - 1 with s^2 = 1 - zeta^2, and u delta, u zeta and u (a - s); BESIDE is 1
 #: for them, else 0.  Of oscillators that the damping couples c is 1, and y_i is c_i h_i' + d_i h_i''.
 C, A, ZETA, Y_Q, Y_E, P_Q, P_E, K_Q, K_E, DELTA, U_DELTA, U_ZETA, U_GAP, BESIDE = range(14)
 ROWS = 14

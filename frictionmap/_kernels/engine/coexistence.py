@@ -19,7 +19,15 @@ from ...regimes import CONTINUOUS, NOT_REACHED, PERMANENT_STICKING, STICK_SLIP
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from .march import steady_state
-from .motion import at_frequency, bring_back, contact_at, forget_neighbour, keep_state, on_continuous, start
+from .motion import (
+    at_frequency,
+    contact_at,
+    forget_neighbour,
+    on_continuous,
+    restore_state,
+    save_state,
+    start,
+)
 from .policies import ABOVE, AROUND, EIGHTHS, NO_FRICTION, RUNGS
 from .records import ContactState, Limits, unresolved
 
@@ -148,7 +156,7 @@ def _from_node(motion, system, row, ladder, way, k, beta, limits, cancel):
     k : index of the node
     beta : friction ratio
     """
-    bring_back(motion, ladder.slot + way * ladder.beta.size + k)
+    restore_state(motion, ladder.slot + way * ladder.beta.size + k)
     at = ladder.at[way, k]
     moment = ContactState(at[0], at[1], at[2], at[3], at[4])
     return _settle(motion, row, _contact(system, row, beta), moment, False, limits, cancel)
@@ -174,7 +182,7 @@ def _keep(motion, system, row, ladder, way, k, beta, found):
         if not continuous or math.isinf(motion.v_abs) or (beta < row.lim and beta < row.stick):
             return
         at = on_continuous(motion, _contact(system, row, beta))
-    keep_state(motion, ladder.slot + way * ladder.beta.size + k)
+    save_state(motion, ladder.slot + way * ladder.beta.size + k)
     numbers = ladder.at[way, k]
     numbers[0], numbers[1], numbers[2], numbers[3], numbers[4] = at.z, at.w, at.cos, at.sin, at.contact_force
     ladder.slides[way, k] = True
@@ -184,8 +192,8 @@ def _keep(motion, system, row, ladder, way, k, beta, found):
 def _take_over(motion, ladder, way, k):
     """Copy the state at a node from the other direction."""
     count = ladder.beta.size
-    bring_back(motion, ladder.slot + (1 - way) * count + k)
-    keep_state(motion, ladder.slot + way * count + k)
+    restore_state(motion, ladder.slot + (1 - way) * count + k)
+    save_state(motion, ladder.slot + way * count + k)
     for j in range(ladder.at.shape[2]):
         ladder.at[way, k, j] = ladder.at[1 - way, k, j]
     ladder.slides[way, k] = True
@@ -243,7 +251,7 @@ def _fill_ladders(motion, system, row, around, above, limits, cancel):
 
 
 @kernel
-def _beside(ladder, way, beta):
+def _next_node(ladder, way, beta):
     """Index of the next node below (upwards) or above beta (downwards) if a motion slides there; else -1."""
     count = ladder.beta.size
     for step in range(count):
@@ -265,12 +273,12 @@ def _from_ladders(motion, system, row, beta, around, above, flags, limits, cance
     flags : flags of the regimes found so far
     """
     for way in range(2):
-        k = _beside(around, way, beta)
+        k = _next_node(around, way, beta)
         if k >= 0 and (beta < row.lim or flags == 0) and not flags & _STICK_SLIP:
             flags |= _bit(
                 _from_node(motion, system, row, around, way, k, beta, limits, cancel).regime
             )  # fmt: skip
-        k = _beside(above, way, beta)
+        k = _next_node(above, way, beta)
         if k >= 0 and (beta >= row.stick or flags == 0) and flags & 6 != _STICK_SLIP | _SLIDES:
             flags |= _bit(_from_node(motion, system, row, above, way, k, beta, limits, cancel).regime)
     return flags

@@ -22,7 +22,7 @@ from ..structure.state import StructureAtFrequency, W, make_structure
 from .records import TURN, stops_at, turns_at
 
 
-class Tools(NamedTuple):
+class ExponentWorkspace(NamedTuple):
     """The structure at one frequency, and the memory of its motions."""
 
     st: StructureAtFrequency
@@ -111,7 +111,7 @@ def _exponent(growth):
 
 
 @kernel
-def _fill_exponent(place, axes, starts, moves, out, growth, tools):
+def _fill_exponent(place, axes, starts, moves, out, growth, workspace):
     """Fill the exponent of one cell.
 
     Parameters
@@ -119,10 +119,10 @@ def _fill_exponent(place, axes, starts, moves, out, growth, tools):
     place : indices of mu, r and beta
     axes, starts, moves, out : see `fill_exponents`
     growth : (cycles, 1) zeros
-    tools : Tools
+    workspace : ExponentWorkspace
     """
-    tools = packed(tools)
-    st, work, scratch, tangent = tools.st, tools.work, tools.scratch, tools.tangent
+    workspace = packed(workspace)
+    st, work, scratch, tangent = workspace.st, workspace.work, workspace.scratch, workspace.tangent
     m, i, j = place
     state = work.middle
     for k in range(st.n):
@@ -157,10 +157,10 @@ def fill_exponents(row, axes, common, starts, moves, out, cancel):
         return
     st = make_structure(common.model, common.loads, i, axes.r[i], common.steps)
     n = st.n
-    tools = Tools(st, make_workspace(n), make_scratch(n), np.zeros((2 * n, padded(2 * n))))
+    workspace = ExponentWorkspace(st, make_workspace(n), make_scratch(n), np.zeros((2 * n, padded(2 * n))))
     for j in range(axes.beta.size):
         if cancel[0] != 0:
             return
         if out.status[m, i, j] == IRREGULAR:
             growth = np.zeros((out.cycles[m, i, j], 1))
-            _fill_exponent((m, i, j), axes, starts, moves, out, growth, tools)
+            _fill_exponent((m, i, j), axes, starts, moves, out, growth, workspace)

@@ -21,7 +21,7 @@ from .segment_table import segment_columns
 RESTART = 256
 
 #: Where a motion with mu = 1 does not settle, its steady state is followed from that of this share of the
-#: friction, in so many steps.
+#: friction, in this number of steps.
 _FROM, _STEPS = 0.75, 8
 
 

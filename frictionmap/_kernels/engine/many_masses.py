@@ -479,14 +479,14 @@ def seek_nearby(motion, contact, limits):
 
 
 @kernel
-def keep_state(motion, slot):
-    """See `motion.keep_state`."""
+def save_state(motion, slot):
+    """See `motion.save_state`."""
     copy_state(motion.state, motion.kept[slot], motion.st.n)
 
 
 @kernel
-def bring_back(motion, slot):
-    """See `motion.bring_back`."""
+def restore_state(motion, slot):
+    """See `motion.restore_state`."""
     copy_state(motion.kept[slot], motion.state, motion.st.n)
 
 

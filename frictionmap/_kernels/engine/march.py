@@ -26,16 +26,16 @@ from ..long_periods import enough_cycles, first_search, next_search
 from ..structure.events import NO_RELEASE
 from .cycle_log import averages, first_averaged, log_event, log_stop
 from .measure import measure, proven_stops
-from .memory import Recurrence, forget_orbits, record_anchor, settle_for_less, settled
+from .memory import Recurrence, record_anchor, relax_acceptance, reset_acceptance, settled
 from .motion import (
     after_turn,
-    bring_back,
     creeps,
     distance_from,
     distance_from_continuous,
-    keep_state,
     lasting_vibration,
     record_state,
+    restore_state,
+    save_state,
     seek,
     seek_nearby,
     slide_to_turn,
@@ -120,7 +120,7 @@ def _next_anchor(motion, contact, contact_state, history, moves, logged, end, mo
     contact_state : ContactState at the present anchor
     history : MotionHistory
     moves : whether the motion starts with a velocity
-    logged : time in tau from which on events are logged
+    logged : time in tau at which the log of events begins
     end : time in tau at which to give up
     most_steps : largest number of scan steps
 
@@ -213,7 +213,7 @@ def _may_recur(event, history, continuous, unbounded):
 def _nearest_recurrence(motion, contact, contact_state, history, schedule, newton):
     """Find the nearest recurrence; if the shortest one led to no orbit, the closest one is tried."""
     if history.time > _LATE:
-        settle_for_less(motion.memory)
+        relax_acceptance(motion.memory)
     shortest = newton and schedule.made % 2 == 0  # the shortest is better conditioned
     recurrence = find_recurrence(motion, contact_state, history.events, contact.unique and newton, shortest)
     if history.slides > 0 and history.slides < 2 * recurrence.lag:
@@ -261,7 +261,7 @@ def _approaches(motion, contact, contact_state, orbit, allowed):
     motion that approaches the orbit comes closer with two successive recurrences, each time at about the rate
     at which the orbit attracts.
     """
-    bring_back(motion, NOW)
+    restore_state(motion, NOW)
     stopped = stops_at(orbit.event)
     closer = 0.5 * (1.0 + orbit.contraction)
     before = math.inf
@@ -303,17 +303,17 @@ def _seek(motion, contact, contact_state, event, history, recurrence, schedule, 
     -------
     Orbit
     """
-    keep_state(motion, NOW)
+    save_state(motion, NOW)
     orbit = seek(
         motion, contact, contact_state, event, history.sign, history.events, recurrence, schedule.made, limits
     )
     if orbit.certain:
         return orbit
-    keep_state(motion, GOAL)
+    save_state(motion, GOAL)
     if _approaches(motion, contact, contact_state, orbit, TURN * limits.cycles):
-        bring_back(motion, GOAL)
+        restore_state(motion, GOAL)
         return orbit
-    bring_back(motion, NOW)
+    restore_state(motion, NOW)
     return no_orbit()
 
 
@@ -362,7 +362,7 @@ def _unfinished(motion, contact, time, end):
 def _forget(motion):
     """Forget the motion before."""
     clear_log(motion.log)
-    forget_orbits(motion.memory)
+    reset_acceptance(motion.memory)
 
 
 @kernel

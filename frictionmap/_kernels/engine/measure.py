@@ -7,7 +7,7 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..event_codes import NO_END
 from ..newton_limits import LONGEST_SLIDE
-from .motion import after_turn, bring_back, has_returned, keep_state, put_slide, put_stop, slide_to_turn
+from .motion import after_turn, has_returned, put_slide, put_stop, restore_state, save_state, slide_to_turn
 from .periods import half_periods
 from .policies import ANCHOR
 from .records import SHORTEST_STOP, TURN, known_orbit, stops_at, turns_at
@@ -43,7 +43,7 @@ def measure(motion, contact, orbit, table):
     Measured
     """
     writes = table.shape[0] > 0
-    keep_state(motion, ANCHOR)
+    save_state(motion, ANCHOR)
     contact_state, sign = orbit.contact_state, orbit.sign
     time = stuck = amplitude = 0.0
     stops = segments = count = 0
@@ -77,7 +77,7 @@ def measure(motion, contact, orbit, table):
         count += 1
         if happened == orbit.event and has_returned(motion, ANCHOR, orbit.contact_state, contact_state):
             break
-    bring_back(motion, ANCHOR)
+    restore_state(motion, ANCHOR)
     share = stuck / time if time > 0.0 else 0.0
     return Measured(count, segments, half_periods(time), stops, amplitude, share)
 

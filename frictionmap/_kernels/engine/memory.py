@@ -60,13 +60,13 @@ def make_memory(h, size):
 
 
 @kernel
-def forget_orbits(memory):
+def reset_acceptance(memory):
     """Ask of the next orbit what a new motion asks: that it is well within the margin."""
     memory.wanted[CLOSER], memory.wanted[SHARE] = math.inf, _WELL_WITHIN
 
 
 @kernel
-def settle_for_less(memory):
+def relax_acceptance(memory):
     """Ask of the next orbit that the motion is within the margin."""
     if memory.wanted[SHARE] < _WITHIN:
         memory.wanted[CLOSER], memory.wanted[SHARE] = math.inf, _WITHIN

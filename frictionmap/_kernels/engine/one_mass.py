@@ -378,13 +378,13 @@ def seek_nearby(motion, contact, limits):
 
 
 @kernel
-def keep_state(motion, slot):
-    """See `motion.keep_state`; the contact state is the whole state."""
+def save_state(motion, slot):
+    """See `motion.save_state`; the contact state is the whole state."""
 
 
 @kernel
-def bring_back(motion, slot):
-    """See `motion.bring_back`."""
+def restore_state(motion, slot):
+    """See `motion.restore_state`."""
 
 
 @kernel

@@ -9,7 +9,7 @@ from ..compiler.packed import packed
 from ..event_codes import NO_END, STUCK
 from ..structure.events import NO_RELEASE
 from .measure import measure
-from .motion import after_turn, at_frequency, bring_back, contact_at, keep_state, slide_to_turn, start
+from .motion import after_turn, at_frequency, contact_at, restore_state, save_state, slide_to_turn, start
 from .policies import NOW
 from .records import known_orbit, stops_at, turns_at
 from .segment_table import segment_columns
@@ -64,9 +64,9 @@ def _count_slides(motion, system, beta, mu, moving, before, duration):
     contact = contact_at(system, 0, 0, beta, mu)
     contact_state = start(motion, system, 0, contact, moving)
     _, contact_state, sign = _follow(motion, contact, contact_state, moving, before)
-    keep_state(motion, NOW)
+    save_state(motion, NOW)
     slides, _, _ = _follow(motion, contact, contact_state, True, duration)
-    bring_back(motion, NOW)
+    restore_state(motion, NOW)
     return contact, contact_state, sign, slides
 
 

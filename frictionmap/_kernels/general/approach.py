@@ -6,11 +6,11 @@ For mu > 1 several steady states may attract, and a motion may pass one by for s
 import math
 
 from ..compiler import kernel
-from .creep import find_rest, let_go
+from .creep import find_rest, restore_friction
 from .follow import FOLLOWED, SLIPS, STOPS, TURNS
 from .orbits import NO_REPEAT, REPEATS, RETURNED, Steady, largest_multiplier, least_period
+from .recurrence import distance_back, distance_from_last, distance_from_orbit, go_back, put_orbit, take_orbit
 from .return_map import base_halves, go_round, motion_size, take_end
-from .returns import distance_back, distance_from_last, distance_from_orbit, go_back, put_orbit, take_orbit
 
 #: Largest distance from the motion that Newton's method may lead to, where the start matters.
 _SAME = 5e-2
@@ -64,7 +64,7 @@ def _does_the_same(memory, ring):
 
 
 @kernel
-def _approaches(problem, row, friction, halves, contraction, work, memory, ring, record):
+def _approaches(problem, row, friction, halves, contraction, motion, memory, ring, record):
     """Whether the motion comes nearer to the steady state in `memory.start`, which stays there.
 
     The motion is followed until most of the distance is gone, or for as long as that should take.  In every
@@ -75,7 +75,7 @@ def _approaches(problem, row, friction, halves, contraction, work, memory, ring,
     problem, row, friction : Problem, Row, Friction
     halves : half periods after which the steady state returns
     contraction : largest modulus of its multipliers over these
-    work, memory, ring, record : Work, Return, Ring, Record; `memory.counts` are those of the steady state
+    motion, memory, ring, record : Motion, Return, Ring, Record; `memory.counts` are those of the steady state
 
     Returns
     -------
@@ -92,7 +92,7 @@ def _approaches(problem, row, friction, halves, contraction, work, memory, ring,
         returns = int(min(2.0 + needed, returns))
     approaches, cycles = False, 0.0
     for count in range(1, returns + 1):
-        code = go_round(problem, row, friction, halves, work, memory, record, False)
+        code = go_round(problem, row, friction, halves, motion, memory, record, False)
         cycles += 0.5 * halves
         if code != FOLLOWED or not _does_the_same(memory, ring):
             break
@@ -106,7 +106,7 @@ def _approaches(problem, row, friction, halves, contraction, work, memory, ring,
 
 
 @kernel
-def try_return(problem, row, friction, halves, tolerance, work, memory, ring, record):
+def try_return(problem, row, friction, halves, tolerance, motion, memory, ring, record):
     """Find the steady state that the motion goes to, from a return after some half periods.
 
     Parameters
@@ -114,24 +114,24 @@ def try_return(problem, row, friction, halves, tolerance, work, memory, ring, re
     problem, row, friction : Problem, Row, Friction
     halves : number of half periods
     tolerance : see `find`
-    work, memory, ring, record : Work, Return, Ring, Record
+    motion, memory, ring, record : Motion, Return, Ring, Record
 
     Returns
     -------
     Steady : REPEATS or NO_REPEAT
     """
     base = base_halves(problem)
-    status, cycles = find_rest(problem, row, friction, halves, tolerance, work, memory, record, ring)
+    status, cycles = find_rest(problem, row, friction, halves, tolerance, motion, memory, record, ring)
     if status == REPEATS:
-        contraction = largest_multiplier(problem, row, halves, _STABLE_PRECISION, work, memory)
+        contraction = largest_multiplier(problem, row, halves, _STABLE_PRECISION, motion, memory)
         if _heads_for(problem, row, halves, contraction, memory, ring):
             approaches, more = _approaches(
-                problem, row, friction, halves, contraction, work, memory, ring, record
+                problem, row, friction, halves, contraction, motion, memory, ring, record
             )
             cycles += more
             if approaches:
-                least, more = least_period(problem, row, friction, halves, base, work, memory, record)
+                least, more = least_period(problem, row, friction, halves, base, motion, memory, record)
                 return Steady(REPEATS, least, cycles + more)
-        let_go(friction, ring)
+        restore_friction(friction, ring.friction)
     go_back(memory, ring, 0)
     return Steady(NO_REPEAT, 0, cycles)

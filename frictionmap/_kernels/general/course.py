@@ -23,9 +23,9 @@ from .follow import (
     TURNS,
     follow,
 )
-from .record import LEAST_SLIP, NOTHING, RANGES, begin_cycle, clear_record
+from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES, begin_cycle, clear_record
+from .recurrence import keep
 from .return_map import put_state, take_state
-from .returns import keep
 
 #: Columns of the log, each for all contacts: numbers that are added over the time ...
 _STOPS, _TURNS, _STUCK, _SLIPS, _REVERSALS, _DISTANCE, _WORK, _WALL_WORK = 0, 1, 2, 3, 4, 5, 6, 7
@@ -77,17 +77,17 @@ def _log_cycle(counts, record, log, slot):
         log[slot, _SLIPS * contacts + j] += counts[SLIPS, j]
         log[slot, _REVERSALS * contacts + j] += counts[REVERSALS, j]
         log[slot, _DISTANCE * contacts + j] += record.distance[j]
-        log[slot, _WORK * contacts + j] += record.works[0, j]
-        log[slot, _WALL_WORK * contacts + j] += record.works[1, j]
+        log[slot, _WORK * contacts + j] += record.works[OF_FRICTION, j]
+        log[slot, _WALL_WORK * contacts + j] += record.works[OF_WALL, j]
         _raise(log, slot, _MOVED * contacts + j, counts[MOVED, j])
         _raise(log, slot, _RELEASE_ORDER * contacts + j, counts[RELEASE_ORDER, j])
         _raise(log, slot, _MINUS_LEAST_SLIP * contacts + j, -record.slips[LEAST_SLIP, j])
-        largest = max(record.ranges[1, j], -record.ranges[0, j])
+        largest = max(record.ranges[HIGH, j], -record.ranges[LOW, j])
         _raise(log, slot, _LARGEST * contacts + j, largest)
     places = record.ranges.shape[1]
     for i in range(places):
-        _raise(log, slot, _PER_CONTACT * contacts + i, record.ranges[1, i])
-        _raise(log, slot, _PER_CONTACT * contacts + places + i, -record.ranges[0, i])
+        _raise(log, slot, _PER_CONTACT * contacts + i, record.ranges[HIGH, i])
+        _raise(log, slot, _PER_CONTACT * contacts + places + i, -record.ranges[LOW, i])
 
 
 @kernel
@@ -97,22 +97,22 @@ def _raise(log, slot, column, value):
 
 
 @kernel
-def follow_cycle(problem, row, friction, followed, work, memory, ring, record, course):
+def follow_cycle(problem, row, friction, followed, motion, memory, ring, record, course):
     """Follow the motion from `memory.start` for a period of the load, and log it.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
     followed : periods of the load before this one
-    work, memory, ring, record, course : Work, Return, Ring, Record, Course; `memory.start` is replaced by the
-        state at the end, and the states at the section are kept
+    motion, memory, ring, record, course : Motion, Return, Ring, Record, Course; `memory.start` is replaced
+        by the state at the end, and the states at the section are kept
 
     Returns
     -------
     int : code of `follow`
     """
     counts = course.counts
-    put_state(memory.start, memory.senses, work)
+    put_state(memory.start, memory.senses, motion)
     begin_cycle(record)
     for part in range(COUNT_ROWS):
         if part != LAST_SENSE and part != FIRST_SENSE:
@@ -122,12 +122,12 @@ def follow_cycle(problem, row, friction, followed, work, memory, ring, record, c
     record.active[0] = RANGES
     for half in range(2):
         if code == FOLLOWED:
-            code = follow(problem, row, friction, half, work, memory.law, counts, record, False)
+            code = follow(problem, row, friction, half, motion, memory.box, counts, record, False)
             if half == 1:
-                take_state(work, memory.start, memory.senses, 1.0)
+                take_state(motion, memory.start, memory.senses, 1.0)
                 keep(memory, ring)
             elif problem.symmetric:  # the states of symmetric systems are kept with the sign of `go_round`
-                take_state(work, memory.start, memory.senses, -1.0)
+                take_state(motion, memory.start, memory.senses, -1.0)
                 keep(memory, ring)
     record.active[0] = NOTHING
     slot = int((followed - course.begun[0]) / course.log[CAPACITY, LENGTH])
@@ -202,8 +202,8 @@ def take_window(course, counts, record):
         counts[MOVED, j] = _most(course, _MOVED * contacts + j)
         counts[RELEASE_ORDER, j] = _most(course, _RELEASE_ORDER * contacts + j)
         record.distance[j] = _total(course, _DISTANCE * contacts + j)
-        record.works[0, j] = _total(course, _WORK * contacts + j)
-        record.works[1, j] = _total(course, _WALL_WORK * contacts + j)
+        record.works[OF_FRICTION, j] = _total(course, _WORK * contacts + j)
+        record.works[OF_WALL, j] = _total(course, _WALL_WORK * contacts + j)
     halves = int(2.0 * course.log[CAPACITY, LENGTH] * (last - first))
     for j in range(contacts):
         least = -_most(course, _MINUS_LEAST_SLIP * contacts + j)
@@ -212,6 +212,6 @@ def take_window(course, counts, record):
         record.slips[LEAST_SLIP, j] = least
     places = record.ranges.shape[1]
     for i in range(places):
-        record.ranges[1, i] = _most(course, _PER_CONTACT * contacts + i)
-        record.ranges[0, i] = -_most(course, _PER_CONTACT * contacts + places + i)
+        record.ranges[HIGH, i] = _most(course, _PER_CONTACT * contacts + i)
+        record.ranges[LOW, i] = -_most(course, _PER_CONTACT * contacts + places + i)
     return halves

@@ -9,9 +9,10 @@ ways.
 from ..compiler import kernel
 from .follow import FOLLOWED, MOVED, STUCK
 from .orbits import DRIFTS, NO_REPEAT, REPEATS, drifts, newton
-from .record import FORCES, NOTHING, clear_record
+from .problem import F, Q
+from .record import FORCES, HIGH, LOW, NOTHING, clear_record
+from .recurrence import go_back
 from .return_map import copy_motion, go_round, take_end
-from .returns import go_back
 
 #: Friction of a contact that is held.
 WITHOUT_LIMIT = 1e200
@@ -30,18 +31,25 @@ _ATTEMPTS = 8
 
 
 @kernel
-def _keep(friction, kept):
-    """Keep the friction of the contacts, of which none is held, in `kept` (4, N)."""
+def keep_friction(friction, kept):
+    """Keep the friction of the contacts, of which none is held, in the first rows of `kept`."""
     for j in range(friction.kinetic.size):
         kept[_KINETIC, j], kept[_STATIC, j] = friction.kinetic[j], friction.static[j]
-        kept[_MARK, j] = kept[_WAY, j] = 0.0
 
 
 @kernel
-def let_go(friction, ring):
-    """Give the contacts the friction back that they had."""
+def restore_friction(friction, kept):
+    """Give the contacts the friction back that was kept."""
     for j in range(friction.kinetic.size):
-        friction.kinetic[j], friction.static[j] = ring.friction[_KINETIC, j], ring.friction[_STATIC, j]
+        friction.kinetic[j], friction.static[j] = kept[_KINETIC, j], kept[_STATIC, j]
+
+
+@kernel
+def _keep(friction, kept):
+    """Keep the friction of the contacts, and that none is held, in `kept` (4, N)."""
+    keep_friction(friction, kept)
+    for j in range(friction.kinetic.size):
+        kept[_MARK, j] = kept[_WAY, j] = 0.0
 
 
 @kernel
@@ -76,7 +84,7 @@ def _hold(problem, friction, share, memory, kept):
             if kept[_MARK, j] == _LET_GO:
                 kept[_MARK, j] = _RESTS
             if memory.senses[j] != 0 and problem.spring[j] != 0.0:
-                memory.start[2, j] = memory.senses[j] * kept[_KINETIC, j]
+                memory.start[F, j] = memory.senses[j] * kept[_KINETIC, j]
             memory.senses[j] = 0
             count += 1
     return count
@@ -93,13 +101,13 @@ def _displace(problem, memory, j, change):
         if problem.squares[m] <= 0.0:
             return
     for m in range(modes):
-        memory.start[0, m] -= problem.chi[j, m] * change / problem.squares[m]
+        memory.start[Q, m] -= problem.chi[j, m] * change / problem.squares[m]
     if problem.spring[j] != 0.0:
-        memory.start[2, j] += change
+        memory.start[F, j] += change
 
 
 @kernel
-def _release_overloaded(problem, row, friction, work, memory, record, kept):
+def _release_overloaded(problem, row, friction, motion, memory, record, kept):
     """Let contacts go that cannot rest in the steady state in `memory.start`; how many, -1 where unknown.
 
     A contact can rest if a constant is within the range [f - mu beta nu, f + mu beta nu] at every phase: that
@@ -109,7 +117,7 @@ def _release_overloaded(problem, row, friction, work, memory, record, kept):
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction, with contacts held
-    work, memory, record : Work, Return, Record
+    motion, memory, record : Motion, Return, Record
     kept : see `_keep`
     """
     contacts = memory.senses.size
@@ -117,14 +125,14 @@ def _release_overloaded(problem, row, friction, work, memory, record, kept):
         record.limits[j] = kept[_STATIC, j]
     clear_record(record)
     record.active[0] = FORCES
-    code = go_round(problem, row, friction, 2, work, memory, record, False)
+    code = go_round(problem, row, friction, 2, motion, memory, record, False)
     record.active[0] = NOTHING
     count = 0
     for j in range(contacts):
         record.limits[j] = 0.0
-        overloaded = not record.forces[1, j] <= record.forces[0, contacts + j]
+        overloaded = not record.forces[HIGH, j] <= record.forces[LOW, contacts + j]
         if friction.kinetic[j] == WITHOUT_LIMIT and overloaded and kept[_MARK, j] != _RESTS:
-            _displace(problem, memory, j, -0.5 * (record.forces[1, j] + record.forces[0, contacts + j]))
+            _displace(problem, memory, j, -0.5 * (record.forces[HIGH, j] + record.forces[LOW, contacts + j]))
             friction.kinetic[j], friction.static[j] = kept[_KINETIC, j], kept[_STATIC, j]
             kept[_MARK, j] = _LET_GO
             count += 1
@@ -132,12 +140,12 @@ def _release_overloaded(problem, row, friction, work, memory, record, kept):
 
 
 @kernel
-def _newton_later(problem, row, friction, halves, tolerance, work, memory, record, ring):
+def _newton_later(problem, row, friction, halves, tolerance, motion, memory, record, ring):
     """Newton's method from the state in `memory.start`, or where it fails from those that follow.
 
     Parameters
     ----------
-    problem, row, friction, halves, tolerance, work, memory, record, ring : see `_settle`
+    problem, row, friction, halves, tolerance, motion, memory, record, ring : see `_settle`
 
     Returns
     -------
@@ -146,13 +154,13 @@ def _newton_later(problem, row, friction, halves, tolerance, work, memory, recor
     cycles = 0.0
     for count in range(1, _ATTEMPTS + 1):
         copy_motion(memory.start, memory.senses, ring.orbit, ring.orbit_senses)
-        status, more = newton(problem, row, friction, halves, tolerance, work, memory, record)
+        status, more = newton(problem, row, friction, halves, tolerance, motion, memory, record)
         cycles += more
         if status != NO_REPEAT:
             return status, cycles
         copy_motion(ring.orbit, ring.orbit_senses, memory.start, memory.senses)
         for _ in range(count):
-            if go_round(problem, row, friction, halves, work, memory, record, False) != FOLLOWED:
+            if go_round(problem, row, friction, halves, motion, memory, record, False) != FOLLOWED:
                 return NO_REPEAT, cycles
             cycles += 0.5 * halves
             take_end(memory)
@@ -160,7 +168,7 @@ def _newton_later(problem, row, friction, halves, tolerance, work, memory, recor
 
 
 @kernel
-def _settle(problem, row, friction, halves, tolerance, work, memory, record, ring):
+def _settle(problem, row, friction, halves, tolerance, motion, memory, record, ring):
     """Find a steady state by Newton's method; contacts that drift are held, those that cannot rest let go.
 
     A contact that was let go, and drifts again, rests: its load exceeds its limit by so little that it slides
@@ -171,7 +179,7 @@ def _settle(problem, row, friction, halves, tolerance, work, memory, record, rin
     problem, row, friction : Problem, Row, Friction; contacts that rest keep a friction without limit
     halves : half periods after which it returns
     tolerance : see `steady.find`
-    work, memory, record, ring : Work, Return, Record, Ring, whose friction is that before, see `_keep`
+    motion, memory, record, ring : Motion, Return, Record, Ring, whose friction is that before, see `_keep`
 
     Returns
     -------
@@ -183,10 +191,10 @@ def _settle(problem, row, friction, halves, tolerance, work, memory, record, rin
         held += friction.kinetic[j] == WITHOUT_LIMIT
     for turn in range(3 * memory.senses.size + 1):  # each contact is held, let go, and held again
         if turn == 0 and held == 0:
-            status, more = newton(problem, row, friction, halves, tolerance, work, memory, record)
+            status, more = newton(problem, row, friction, halves, tolerance, motion, memory, record)
         else:
             status, more = _newton_later(
-                problem, row, friction, halves, tolerance, work, memory, record, ring
+                problem, row, friction, halves, tolerance, motion, memory, record, ring
             )
         cycles += more
         if status == DRIFTS:
@@ -197,7 +205,7 @@ def _settle(problem, row, friction, halves, tolerance, work, memory, record, rin
         elif status != REPEATS or held == 0:
             return status, cycles
         else:
-            released = _release_overloaded(problem, row, friction, work, memory, record, ring.friction)
+            released = _release_overloaded(problem, row, friction, motion, memory, record, ring.friction)
             cycles += 1.0
             if released < 0:
                 break
@@ -208,31 +216,31 @@ def _settle(problem, row, friction, halves, tolerance, work, memory, record, rin
 
 
 @kernel
-def find_rest(problem, row, friction, halves, tolerance, work, memory, record, ring):
+def find_rest(problem, row, friction, halves, tolerance, motion, memory, record, ring):
     """Find the steady state by Newton's method, and the contacts that rest in it.
 
     Parameters
     ----------
-    problem, row, friction, halves, tolerance, work, memory, record, ring : see `_settle`
+    problem, row, friction, halves, tolerance, motion, memory, record, ring : see `_settle`
 
     Returns
     -------
     (status, cycles) : REPEATS or NO_REPEAT, then with the friction as it was; periods followed
     """
     _keep(friction, ring.friction)
-    status, cycles = _settle(problem, row, friction, halves, tolerance, work, memory, record, ring)
+    status, cycles = _settle(problem, row, friction, halves, tolerance, motion, memory, record, ring)
     if status != REPEATS:
-        let_go(friction, ring)
+        restore_friction(friction, ring.friction)
     return status, cycles
 
 
 @kernel
-def find_held(problem, row, friction, halves, tolerance, work, memory, record, ring):
+def find_held(problem, row, friction, halves, tolerance, motion, memory, record, ring):
     """Find the steady state from the one of the structure that is held where it creeps; see `find_rest`.
 
     Parameters
     ----------
-    problem, row, friction, halves, tolerance, work, memory, record : see `find_rest`
+    problem, row, friction, halves, tolerance, motion, memory, record : see `find_rest`
     ring : Ring; the motion is that of its last state
 
     Returns
@@ -242,15 +250,15 @@ def find_held(problem, row, friction, halves, tolerance, work, memory, record, r
     cycles = 0.0
     for share in _HELD:
         go_back(memory, ring, 0)
-        code = go_round(problem, row, friction, 2, work, memory, record, False)
+        code = go_round(problem, row, friction, 2, motion, memory, record, False)
         cycles += 1.0
         _keep(friction, ring.friction)
         if code == FOLLOWED and _hold(problem, friction, share, memory, ring.friction) > 0:
-            status, more = _settle(problem, row, friction, halves, tolerance, work, memory, record, ring)
+            status, more = _settle(problem, row, friction, halves, tolerance, motion, memory, record, ring)
             cycles += more
             if status == REPEATS:
                 return status, cycles
-        let_go(friction, ring)
+        restore_friction(friction, ring.friction)
     return NO_REPEAT, cycles
 
 
@@ -269,5 +277,5 @@ def end_creep(problem, friction, memory, record, ring):
     for j in range(contacts):
         way = ring.friction[_WAY, j]
         if friction.kinetic[j] == WITHOUT_LIMIT and way != 0.0:
-            change = -record.forces[1, j] if way > 0.0 else -record.forces[0, contacts + j]
+            change = -record.forces[HIGH, j] if way > 0.0 else -record.forces[LOW, contacts + j]
             _displace(problem, memory, j, change)

@@ -34,25 +34,24 @@ from .reach import (
     PART,
     PART_END,
     TRIAL,
+    find_motion,
     margin,
-    reach,
     set_levels,
 )
 
-#: Places in `Walk.aim`: where the end should be; how far off that may be; distance of both sides at the last
-#: check, and trials since; where no motion was found.
+#: Places in `Walk.aim`: predicted end; its error; distance of both sides at the last check, and trials since;
+#: where no motion was found.
 _GUESS, _ERROR, _WIDTH, _TRIES, _UNKNOWN = 0, 1, 2, 3, 4
 
 #: Trials around an end at most: halving to rounding takes 60.
 _TRIALS = 160
 
-#: How far off the end is supposed to be, over the distance from the last motion inside at first, then over
-#: the last change of what is supposed; and what is left of that trust where a trial contradicts it.  The
-#: supposed end, linear in the last two motions, nears the end faster than linearly: a twentieth is a cautious
-#: share.
+#: Error of the predicted end: share of its distance from the last motion inside at first, then of the last
+#: change of the prediction; and the factor by which it grows where a trial contradicts it.  The prediction,
+#: linear in the last two motions, converges faster than linearly: a twentieth is a cautious share.
 _OFF, _WORSE = 0.05, 4.0
 
-#: After so many trials without half of the interval gone, it is halved: the margin does not go to zero.
+#: If the interval has not been halved after this number of trials, it is: the margin does not go to zero.
 _CHECKED = 3
 
 #: Distance of both sides in the end, over beta, some units of rounding of a margin; and over a step of the
@@ -133,10 +132,10 @@ def close_in(problem, i, search, m, walk, resolved):
         if abs(outside - inside) <= resolved * outside:
             break
         beta = _next_trial(search, m, walk, resolved)
-        reach(problem, i, search, beta, search.tolerance, walk, INSIDE_END, TRIAL)
+        find_motion(problem, i, search, beta, search.tolerance, walk, INSIDE_END, TRIAL)
         missed = motions.kind[TRIAL]
         if (missed == NOT_FOUND or missed == GROWS) and motions.kind[OUTSIDE_END] == HAS_STOPS:
-            reach(problem, i, search, beta, search.tolerance, walk, OUTSIDE_END, TRIAL)
+            find_motion(problem, i, search, beta, search.tolerance, walk, OUTSIDE_END, TRIAL)
             if motions.kind[TRIAL] == NOT_FOUND:
                 motions.kind[TRIAL] = missed
         aim[_UNKNOWN] = math.nan
@@ -156,7 +155,7 @@ def put_between(walk, a, b):
     copy_neighbour(walk.motions, a, INSIDE_END)
     copy_neighbour(walk.motions, b, OUTSIDE_END)
     if walk.motions.beta[a] > walk.motions.beta[b]:
-        walk.motions.linked[INSIDE_END] = UNLINKED  # what it changes by is known from another side
+        walk.motions.linked[INSIDE_END] = UNLINKED  # its rates are those on the other side
 
 
 @kernel
@@ -183,10 +182,8 @@ def _slowest(motions, a):
 
 
 @kernel
-def _what_stops(search, m, walk, a, b):
-    """What ends an interval without stops, and the contact, from the motions a and b on both sides of the
-    end.
-    """
+def _cause_of_end(search, m, walk, a, b):
+    """Cause of the end of an interval without stops, and the contact, from the motions a and b beside it."""
     motions = walk.motions
     turning, slowing = _nearest_turn(motions, walk.levels, m, a), _slowest(motions, a)
     if motions.kind[a] == SLIDES and margin(search, m, walk, a) <= _NO_MARGIN:
@@ -227,7 +224,7 @@ def _close_interval(search, found, i, m, walk, a, b):
     found.ends[m, i, k] = walk.motions.beta[a]
     if k == 0 and found.begins[m, i, 0] == 0.0:
         set_levels(search, walk.motions.beta[a], walk)
-        found.kind[m, i], found.contact[m, i] = _what_stops(search, m, walk, a, b)
+        found.kind[m, i], found.contact[m, i] = _cause_of_end(search, m, walk, a, b)
     walk.ended[m], walk.open[m] = k + 1, 0
 
 
@@ -278,7 +275,7 @@ def change_at_larger_static_friction(problem, i, search, found, walk, a, b):
         for k in range(1, parts + 1):
             if k < parts:
                 beta = motions.beta[a] + k * step
-                reach(problem, i, search, beta, search.tolerance, walk, PART, PART_END)
+                find_motion(problem, i, search, beta, search.tolerance, walk, PART, PART_END)
                 if motions.kind[PART_END] != SLIDES:
                     continue
             else:
@@ -309,7 +306,7 @@ def is_certain(problem, i, search, walk, least):
     like = INSIDE_END if slid else OUTSIDE_END
     if step <= least or motions.kind[HERE] == NOT_FOUND or motions.kind[like] != motions.kind[HERE]:
         return True
-    return doubt_between(walk.tools.row, motions, HERE, like, True) <= 1.0
+    return doubt_between(walk.workspace.row, motions, HERE, like, True) <= 1.0
 
 
 @kernel

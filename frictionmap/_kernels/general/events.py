@@ -11,7 +11,7 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..compiler.vectors import LANES, filled, load, magnitude, total
 from .crossings import first_zero, next_turn, slope_at, value_at
-from .problem import TERMS, WIDTH
+from .problem import TERMS, WIDTH, H
 from .series import first_contact_row
 
 #: Turns, and stops, that are listed; further ones are counted.
@@ -162,22 +162,24 @@ def _keep_speeds(series, at, end, sense, goes_on, scratch, events, j):
 
 
 @kernel
-def list_step(problem, row, work, end, events):
+def list_step(problem, row, motion, end, events):
     """List what happened at the beginning of the present step, and what happens in it, up to `end` in x."""
     if end == 0.0:  # of several events at one instant the last one counts
         return
     contacts = problem.spring.size
     velocity = first_contact_row(problem) + contacts
     for j in range(contacts):
-        sense, before = work.sense[j], events.last[_SENSE, j]
+        sense, before = motion.sense[j], events.last[_SENSE, j]
         changed = sense != before
         if changed and before == before:
             _list_change(events, j, before, sense)
         if sense != 0:
             events.last[UP if sense > 0 else DOWN, j] = 1.0
-            _keep_speeds(work.series, velocity + j, end, float(sense), not changed, work.scratch, events, j)
+            _keep_speeds(
+                motion.series, velocity + j, end, float(sense), not changed, motion.scratch, events, j
+            )
         events.last[_SENSE, j] = sense
-    events.clock[0] += end * row.numbers[0]
+    events.clock[0] += end * row.numbers[H]
 
 
 @kernel

@@ -27,16 +27,17 @@ from ..extrapolation import CELLS, reaches, weight
 from .follow import MOVED, RELEASE_ORDER, REVERSALS, SLIPS, STOPS, STOPS_ERROR, STUCK, STUCK_ERROR, TURNS
 from .places import fill_needs, keep_held, place_after_start
 from .problem import padded
-from .record import LEAST_SLIP, NOTHING, RANGES, varies
+from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES, varies
 from .return_map import copy_motion, copy_state, from_rest, steady_period
 from .series import Friction
-from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, make_tools, solve_from
+from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, make_workspace, solve_from
 
-#: Multiplier from which on a steady state may be one of many beside each other, of which the start decides.
+#: A steady state with a larger multiplier may be one of a continuum: the result depends on the initial state.
 _ISOLATED = 1.0 - 1e-9
 
 
-#: Contacts of a row that stick permanently: not known yet, some slip after the start, none does from here on.
+#: Contacts of a row that stick permanently: not known yet, some slip after the start, none does
+#: in this cell and those after it.
 _UNKNOWN, _SLIPS, _STAYS = 0, 1, 2
 
 
@@ -138,13 +139,13 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
         out.reversals[m, i, b, j] = counts[REVERSALS, j] / period
         out.least_slip[m, i, b, j] = record.slips[LEAST_SLIP, j]
         out.distance[m, i, b, j] = record.distance[j] / period
-        out.works[m, i, b, j] = record.works[0, j] / period
-        out.wall_works[m, i, b, j] = record.works[1, j] / period
+        out.works[m, i, b, j] = record.works[OF_FRICTION, j] / period
+        out.wall_works[m, i, b, j] = record.works[OF_WALL, j] / period
         differs = differs or counts[RELEASE_ORDER, j] != 0.0
     out.release_order[m, i, b] = 1 if differs else 0
     for k in range(record.ranges.shape[1]):
-        out.lowest[m, i, b, k] = record.ranges[0, k]
-        out.highest[m, i, b, k] = record.ranges[1, k]
+        out.lowest[m, i, b, k] = record.ranges[LOW, k]
+        out.highest[m, i, b, k] = record.ranges[HIGH, k]
     if most == PERMANENT_STICKING:
         return PERMANENT_STICKING
     if least >= CONTINUOUS:
@@ -210,14 +211,14 @@ def _store_stuck(out, m, i, b):
 
 
 @kernel
-def _place_stuck(problem, grid, m, i, b, friction, tools, place, out):
+def _place_stuck(problem, grid, m, i, b, friction, workspace, place, out):
     """Store the displacements at the places to which the start leads in a cell that sticks permanently.
 
     Parameters
     ----------
     problem, grid : Problem, Grid
     m, i, b : indices of mu, r and beta
-    friction, tools : Friction, replaced; Tools
+    friction, workspace : Friction, replaced; Workspace
     place : _UNKNOWN, _SLIPS or _STAYS, of the cells of the row before this one
     out : Cells
 
@@ -225,8 +226,8 @@ def _place_stuck(problem, grid, m, i, b, friction, tools, place, out):
     -------
     int : _SLIPS or _STAYS
     """
-    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
-    places, needs = tools.places, tools.needs
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+    places, needs = workspace.places, workspace.needs
     if place == _STAYS:
         return _STAYS
     state = grid.starts[i]
@@ -235,9 +236,9 @@ def _place_stuck(problem, grid, m, i, b, friction, tools, place, out):
     for j in range(needs.size):
         changes = changes or varies(problem, j)
     if place == _UNKNOWN or changes:
-        if not keep_held(problem, row, friction, grid.tolerance, work, memory, record, places):
+        if not keep_held(problem, row, friction, grid.tolerance, motion, memory, record, places):
             return _STAYS
-        fill_needs(problem, row, friction, state, work, memory, record, places, needs)
+        fill_needs(problem, row, friction, state, motion, memory, record, places, needs)
     _set_friction(grid, m, i, b, friction)
     stays = True
     for j in range(needs.size):
@@ -245,7 +246,9 @@ def _place_stuck(problem, grid, m, i, b, friction, tools, place, out):
     if stays:
         return _STAYS
     shift = out.lowest[m, i, b]
-    if not place_after_start(problem, row, friction, state, grid.cycles, work, memory, record, places, shift):
+    if not place_after_start(
+        problem, row, friction, state, grid.cycles, motion, memory, record, places, shift
+    ):
         out.status[m, i, b] = NOT_REACHED
         for k in range(shift.size):
             shift[k] = math.nan
@@ -306,50 +309,50 @@ def _begin_ahead(beta, trail, memory):
 
 
 @kernel
-def _solve_cell(problem, grid, m, i, b, friction, tools, trail):
+def _solve_cell(problem, grid, m, i, b, friction, workspace, trail):
     """Find the steady state of a cell: from where the last cells point, if that leads to it, or from rest.
 
     Parameters
     ----------
     problem, grid : Problem, Grid
     m, i, b : indices of mu, r and beta
-    friction, tools, trail : Friction, filled with that of the cell; Tools, Trail
+    friction, workspace, trail : Friction, filled with that of the cell; Workspace, Trail
 
     Returns
     -------
     Steady, half periods measured, multiplier
     """
-    state, row, memory = grid.starts[i], tools.row, tools.memory
+    state, row, memory = grid.starts[i], workspace.row, workspace.memory
     unique = _set_friction(grid, m, i, b, friction)
     if unique and trail.count[0] > 0:
         _begin_ahead(grid.beta[i, b], trail, memory)
         found, halves, multiplier = solve_from(
-            problem, friction, state, grid.cycles, grid.tolerance, tools, RANGES, True
+            problem, friction, state, grid.cycles, grid.tolerance, workspace, RANGES, True
         )
         if found.status == REPEATS and multiplier < _ISOLATED:
             return found, halves, multiplier
         _set_friction(grid, m, i, b, friction)
-    from_rest(problem, row, friction, state, tools.work, memory, tools.record, NOTHING)
-    return solve_from(problem, friction, state, grid.cycles, grid.tolerance, tools, RANGES, True)
+    from_rest(problem, row, friction, state, workspace.motion, memory, workspace.record, NOTHING)
+    return solve_from(problem, friction, state, grid.cycles, grid.tolerance, workspace, RANGES, True)
 
 
 @kernel
-def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
+def _fill_rows(first, last, problem, grid, out, workspace, trail, friction, cancel):
     """Fill rows; see `fill_rows`.
 
     Parameters
     ----------
     first, last, problem, grid, out, cancel : see `fill_rows`
-    tools, trail, friction : Tools, Trail, Friction; their content does not matter
+    workspace, trail, friction : Workspace, Trail, Friction; their content does not matter
     """
-    problem, grid, out, tools = packed(problem), packed(grid), packed(out), packed(tools)
+    problem, grid, out, workspace = packed(problem), packed(grid), packed(out), packed(workspace)
     trail, friction = packed(trail), packed(friction)
     n_r = problem.r.size
     for index in range(first, last):
         m, i = index // n_r, index % n_r
         if problem.r[i] == 0.0:
             continue
-        begin_row(problem, i, tools)
+        begin_row(problem, i, workspace)
         trail.count[0] = 0
         place = _UNKNOWN if grid.places else _STAYS
         for b in range(grid.beta.shape[1]):
@@ -357,14 +360,16 @@ def _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel):
                 return
             if b >= grid.stuck_from[m, i]:
                 _store_stuck(out, m, i, b)
-                place = _place_stuck(problem, grid, m, i, b, friction, tools, place, out)
+                place = _place_stuck(problem, grid, m, i, b, friction, workspace, place, out)
                 continue
-            found, halves, multiplier = _solve_cell(problem, grid, m, i, b, friction, tools, trail)
+            found, halves, multiplier = _solve_cell(problem, grid, m, i, b, friction, workspace, trail)
             if found.status == REPEATS:
-                _remember(tools.memory, grid.beta[i, b], trail)
+                _remember(workspace.memory, grid.beta[i, b], trail)
             else:
                 trail.count[0] = 0
-            _store(problem, out, m, i, b, found, (halves, multiplier), tools.memory.counts, tools.record)
+            _store(
+                problem, out, m, i, b, found, (halves, multiplier), workspace.memory.counts, workspace.record
+            )
 
 
 @entry
@@ -380,7 +385,7 @@ def fill_rows(first, last, problem, grid, out, masses, cancel):
     masses : (n, m) displacement of the masses per mode; n = 0 where they are not asked for
     cancel : (1,) set by another thread to end the computation
     """
-    tools, trail = make_tools(problem, masses, 0), make_trail(problem)
+    workspace, trail = make_workspace(problem, masses, 0), make_trail(problem)
     contacts = problem.spring.size
     friction = Friction(np.empty(contacts), np.empty(contacts))
-    _fill_rows(first, last, problem, grid, out, tools, trail, friction, cancel)
+    _fill_rows(first, last, problem, grid, out, workspace, trail, friction, cancel)

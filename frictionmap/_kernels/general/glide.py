@@ -13,7 +13,7 @@ from ..compiler import inner_kernel, kernel
 from ..compiler.packed import packed
 from ..compiler.vectors import LANES, filled, least, load, mask_above, most, store
 from .crossings import fill_controls
-from .problem import SECTION, WIDTH, state_size
+from .problem import SECTION, WIDTH, F, H, P, Q, state_size
 from .series import Friction, advance, expand, first_contact_row
 from .tangent import pattern_slot
 
@@ -35,12 +35,12 @@ def can_glide(problem, row):
 
 
 @kernel
-def _keep_controls(problem, row, work, linear, table, bounds, at, step):
+def _keep_controls(problem, row, motion, linear, table, bounds, at, step):
     """Keep the control points of each quantity watched, in rows at, at + step, ... of a table.
 
     Parameters
     ----------
-    problem, row, work : Problem, Row, Work with the series of the interval
+    problem, row, motion : Problem, Row, Motion with the series of the interval
     linear : whether the velocities of belts are left out
     table, bounds : control points, and bounds on their error
     at, step : first row, and distance of the rows of the contacts
@@ -48,57 +48,57 @@ def _keep_controls(problem, row, work, linear, table, bounds, at, step):
     contacts = problem.spring.size
     for j in range(contacts):
         source = first_contact_row(problem) + 2 * contacts + j
-        if work.sense[j] != 0:
+        if motion.sense[j] != 0:
             source -= contacts
             if linear:
-                work.series[source, 0] += row.numbers[0] * problem.belt[j]
-        bounds[at + j * step] = fill_controls(work.series, source, table, at + j * step)
+                motion.series[source, 0] += row.numbers[H] * problem.belt[j]
+        bounds[at + j * step] = fill_controls(motion.series, source, table, at + j * step)
 
 
 @kernel
-def _keep_end(problem, work, table, at):
+def _keep_end(problem, motion, table, at):
     """Copy the state to a row of a table."""
     modes = problem.push.shape[0]
     for m in range(modes):
-        table[at, m] = work.state[0, m]
-        table[at, modes + m] = work.state[1, m]
+        table[at, m] = motion.state[Q, m]
+        table[at, modes + m] = motion.state[P, m]
     for j in range(state_size(problem) - 2 * modes):
-        table[at, 2 * modes + j] = work.state[2, j]
+        table[at, 2 * modes + j] = motion.state[F, j]
 
 
 @kernel
-def _begin_with(problem, work, unit, q):
+def _begin_with(problem, motion, unit, q):
     """Set one unit to 1, and all others and the load to zero.
 
     Parameters
     ----------
-    problem, work : Problem, Work
+    problem, motion : Problem, Motion
     unit : Friction, replaced
     q : coordinate of the state, or after these the contact whose friction force is 1; -1: none
     """
     modes, channels = problem.push.shape
     size = state_size(problem)
     for part in range(3):
-        for i in range(work.state.shape[1]):
-            work.state[part, i] = 0.0
+        for i in range(motion.state.shape[1]):
+            motion.state[part, i] = 0.0
     for j in range(problem.spring.size):
-        unit.kinetic[j] = work.sense[j] if q == size + j else 0.0
+        unit.kinetic[j] = motion.sense[j] if q == size + j else 0.0
     if 0 <= q < 2 * modes:
-        work.state[q // modes, q % modes] = 1.0
+        motion.state[q // modes, q % modes] = 1.0
     elif q < size:
-        work.state[2, q - 2 * modes] = 1.0
-    work.clock[0] = 0.0
+        motion.state[F, q - 2 * modes] = 1.0
+    motion.clock[0] = 0.0
     for k in range(0, channels * WIDTH, LANES):
-        store(filled(0.0), work.series, modes * WIDTH + k)
+        store(filled(0.0), motion.series, modes * WIDTH + k)
 
 
 @kernel
-def _fill_units(problem, row, work, unit, slot):
+def _fill_units(problem, row, motion, unit, slot):
     """Fill the parts of the state and of friction for the present pattern.
 
     Parameters
     ----------
-    problem, row, work : Problem, Row, Work
+    problem, row, motion : Problem, Row, Motion
     unit : Friction, scratch
     slot : place of the pattern
     """
@@ -106,45 +106,45 @@ def _fill_units(problem, row, work, unit, slot):
     units = size + contacts
     parts = row.parts
     for q in range(units):
-        if q >= size and work.sense[q - size] == 0:
+        if q >= size and motion.sense[q - size] == 0:
             continue
-        _begin_with(problem, work, unit, q)
-        expand(problem, row, unit, 0.0, -1, work, False)
+        _begin_with(problem, motion, unit, q)
+        expand(problem, row, unit, 0.0, -1, motion, False)
         first = slot * contacts * units + q
-        _keep_controls(problem, row, work, True, parts.controls, parts.bounds, first, units)
+        _keep_controls(problem, row, motion, True, parts.controls, parts.bounds, first, units)
         if q >= size:
-            advance(problem, row, 1.0, work)
-            _keep_end(problem, work, parts.ends, slot * contacts + q - size)
+            advance(problem, row, 1.0, motion)
+            _keep_end(problem, motion, parts.ends, slot * contacts + q - size)
 
 
 @kernel
-def _fill_load(problem, row, work, unit, interval, at):
+def _fill_load(problem, row, motion, unit, interval, at):
     """Fill the part of the load in an interval for the present pattern.
 
     Parameters
     ----------
-    problem, row, work : Problem, Row, Work
+    problem, row, motion : Problem, Row, Motion
     unit : Friction, scratch
     interval : number of the interval
     at : place of pattern and interval
     """
     contacts = problem.spring.size
     parts = row.parts
-    _begin_with(problem, work, unit, state_size(problem) + contacts)
-    work.clock[0] = math.nan
-    expand(problem, row, unit, SECTION + interval * row.numbers[0], interval, work, False)
-    _keep_controls(problem, row, work, False, parts.load_controls, parts.load_bounds, at * contacts, 1)
-    advance(problem, row, 1.0, work)
-    _keep_end(problem, work, parts.load_ends, at)
+    _begin_with(problem, motion, unit, state_size(problem) + contacts)
+    motion.clock[0] = math.nan
+    expand(problem, row, unit, SECTION + interval * row.numbers[H], interval, motion, False)
+    _keep_controls(problem, row, motion, False, parts.load_controls, parts.load_bounds, at * contacts, 1)
+    advance(problem, row, 1.0, motion)
+    _keep_end(problem, motion, parts.load_ends, at)
 
 
 @kernel
-def _fill(problem, row, work, slot, interval, at):
+def _fill(problem, row, motion, slot, interval, at):
     """Fill the missing parts of the present pattern and interval; the state is as before.
 
     Parameters
     ----------
-    problem, row, work : Problem, Row, Work
+    problem, row, motion : Problem, Row, Motion
     slot : place of the pattern
     interval : number of the interval
     at : place of both
@@ -153,40 +153,40 @@ def _fill(problem, row, work, slot, interval, at):
     pattern = row.patterns[slot]  # the senses of sliding contacts do not matter
     unit = packed(Friction(parts.unit, parts.unit))
     for part in range(3):
-        for i in range(work.state.shape[1]):
-            parts.kept[part, i] = work.state[part, i]
+        for i in range(motion.state.shape[1]):
+            parts.kept[part, i] = motion.state[part, i]
     if parts.known[slot] != pattern:
-        _fill_units(problem, row, work, unit, slot)
+        _fill_units(problem, row, motion, unit, slot)
         parts.known[slot] = pattern
-    _fill_load(problem, row, work, unit, interval, at)
+    _fill_load(problem, row, motion, unit, interval, at)
     parts.loads_known[at] = pattern
     for part in range(3):
-        for i in range(work.state.shape[1]):
-            work.state[part, i] = parts.kept[part, i]
-    work.clock[0] = math.nan
+        for i in range(motion.state.shape[1]):
+            motion.state[part, i] = parts.kept[part, i]
+    motion.clock[0] = math.nan
 
 
 @inner_kernel
-def _coordinates(problem, friction, work):
-    """Put the state, and then the friction forces, in one row: `work.units`."""
+def _coordinates(problem, friction, motion):
+    """Put the state, and then the friction forces, in one row: `motion.units`."""
     modes = problem.push.shape[0]
     size = state_size(problem)
     for m in range(modes):
-        work.units[m] = work.state[0, m]
-        work.units[modes + m] = work.state[1, m]
+        motion.units[m] = motion.state[Q, m]
+        motion.units[modes + m] = motion.state[P, m]
     for j in range(size - 2 * modes):
-        work.units[2 * modes + j] = work.state[2, j]
+        motion.units[2 * modes + j] = motion.state[F, j]
     for j in range(problem.spring.size):
-        work.units[size + j] = work.sense[j] * friction.kinetic[j]
+        motion.units[size + j] = motion.sense[j] * friction.kinetic[j]
 
 
 @inner_kernel
-def _stays(row, friction, work, j, first, units, at):
+def _stays(row, friction, motion, j, first, units, at):
     """Whether what is watched in contact j stays inside its limits.
 
     Parameters
     ----------
-    row, friction, work : Row, Friction, Work with `units`
+    row, friction, motion : Row, Friction, Motion with `units`
     j : contact
     first : row of the first unit in the table
     units : number of units
@@ -199,69 +199,69 @@ def _stays(row, friction, work, j, first, units, at):
     for part in range(0, WIDTH, LANES):
         sum_ = load(parts.load_controls, at * WIDTH + part)
         for q in range(units):
-            if work.units[q] != 0.0:
-                sum_ = sum_ + load(parts.controls, (first + q) * WIDTH + part) * work.units[q]
+            if motion.units[q] != 0.0:
+                sum_ = sum_ + load(parts.controls, (first + q) * WIDTH + part) * motion.units[q]
         low = least(low, sum_)
         high = most(high, sum_)
     for q in range(units):
-        if work.units[q] != 0.0:
-            bound += abs(work.units[q]) * parts.bounds[first + q]
-    if work.sense[j] > 0:
+        if motion.units[q] != 0.0:
+            bound += abs(motion.units[q]) * parts.bounds[first + q]
+    if motion.sense[j] > 0:
         return mask_above(low, bound) == _ALL
-    if work.sense[j] < 0:
+    if motion.sense[j] < 0:
         return mask_above(-bound, high) == _ALL
     limit = friction.static[j] - bound
     return mask_above(low, -limit) == _ALL and mask_above(limit, high) == _ALL
 
 
 @kernel
-def glide(problem, row, friction, interval, work):
+def glide(problem, row, friction, interval, motion):
     """Move the state to the end of an interval, if nothing watched can reach its limit there.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
     interval : number of the interval
-    work : Work; the state is that at the beginning of the interval
+    motion : Motion; the state is that at the beginning of the interval
 
     Returns
     -------
     bool : whether it was moved
     """
-    for j in range(work.sense.size):
-        if work.fresh[j] != 0:
+    for j in range(motion.sense.size):
+        if motion.fresh[j] != 0:
             return False
     contacts, size = problem.spring.size, state_size(problem)
-    slot = pattern_slot(problem, row, work)
+    slot = pattern_slot(problem, row, motion)
     at = slot * 2 * row.intervals[0] + interval
     parts = row.parts
     if parts.loads_known[at] != row.patterns[slot] or parts.known[slot] != row.patterns[slot]:
-        _fill(problem, row, work, slot, interval, at)
-    _coordinates(problem, friction, work)
+        _fill(problem, row, motion, slot, interval, at)
+    _coordinates(problem, friction, motion)
     units = size + contacts
     for j in range(contacts):
-        if work.idle[j]:
+        if motion.idle[j]:
             continue
         first = (slot * contacts + j) * units
-        if not _stays(row, friction, work, j, first, units, at * contacts + j):
+        if not _stays(row, friction, motion, j, first, units, at * contacts + j):
             return False
-    _move(problem, row, work, slot, at)
+    _move(problem, row, motion, slot, at)
     return True
 
 
 @inner_kernel
-def _move(problem, row, work, slot, at):
+def _move(problem, row, motion, slot, at):
     """Set the state to that at the end of the interval."""
     modes, contacts, size = problem.push.shape[0], problem.spring.size, state_size(problem)
     parts = row.parts
     for a in range(size):
         end = parts.load_ends[at, a]
         for b in range(size):
-            end += row.onward[slot, a, b] * work.units[b]
+            end += row.onward[slot, a, b] * motion.units[b]
         for j in range(contacts):
-            if work.sense[j] != 0:
-                end += parts.ends[slot * contacts + j, a] * work.units[size + j]
+            if motion.sense[j] != 0:
+                end += parts.ends[slot * contacts + j, a] * motion.units[size + j]
         if a < 2 * modes:
-            work.state[a // modes, a % modes] = end
-        elif work.sense[a - 2 * modes] == 0 and not work.idle[a - 2 * modes]:
-            work.state[2, a - 2 * modes] = end
+            motion.state[a // modes, a % modes] = end
+        elif motion.sense[a - 2 * modes] == 0 and not motion.idle[a - 2 * modes]:
+            motion.state[F, a - 2 * modes] = end

@@ -19,8 +19,8 @@ from .problem import padded
 #: Kinds of motion: no contact stops; some do; it grows without bound, so that no contact stops; not found.
 SLIDES, HAS_STOPS, GROWS, NOT_FOUND = 0, 1, 2, 3
 
-#: What is known of the changes of a motion per beta: nothing; those from the motion before; nothing, next to
-#: an end, where margins or stops begin with zero.
+#: Rates of a motion, its changes per beta: not known; those from the motion before; not known, next to an
+#: end, where margins or stops begin with zero.
 UNLINKED, LINKED, AT_END = 0, 1, 2
 
 #: Rows of `margins` of a motion: largest share of its friction that the force holding a contact at a turn
@@ -301,7 +301,7 @@ def link(motions, a, b):
 
 @kernel
 def _doubt(before, here, rate, step, ends):
-    """What an extrapolation is off by, over half of the smaller one of two values with the same sign.
+    """Error of an extrapolation over half of the smaller one of two values with the same sign.
 
     Infinite where the sign changes.
 
@@ -376,7 +376,7 @@ def _margins_doubt(motions, a, b, ends):
 
 @kernel
 def level_doubt(motions, a, b, levels, m):
-    """Largest doubt that no turn passes between motions a and b what is enough to stop it for a row of mu.
+    """Largest doubt that no turn reaches the level of a stop, for a row of mu, between motions a and b.
 
     Parameters
     ----------

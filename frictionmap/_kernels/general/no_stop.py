@@ -38,11 +38,11 @@ from .reach import (
     LOOSE,
     LOWEST,
     NEXT,
+    find_first_motion,
+    find_motion,
     keep_unknown,
     make_walk,
     margin,
-    reach,
-    reach_first,
 )
 from .steady import begin_row
 
@@ -54,8 +54,8 @@ _STEP, _WALL, _LEAP = 0, 1, 2
 #: scale: the rates by which the next steps are judged are known from it.
 _FIRST = 0.01
 
-#: Largest change of a step from one to the next, and doubt that is aimed at: some less than what is accepted,
-#: since it changes with the square of the step.
+#: Largest change of a step from one to the next, and the doubt that is aimed at: less than the accepted
+#: one, 1, since it changes with the square of the step.
 _GROWS, _SHRINKS, _AIM = 2.5, 0.2, 0.8
 
 #: Where contacts stop, the largest step over beta: contacts that rest say nothing about what the others do.
@@ -99,7 +99,7 @@ def _begin(problem, i, search, found, walk):
     """
     motions = walk.motions
     known = search.known[i] == search.known[i]
-    reach_first(problem, i, search, walk)
+    find_first_motion(problem, i, search, walk)
     if known and motions.kind[HERE] == SLIDES:  # a further interval, from between here and the known end on
         keep_unknown(max(search.known[i], LOWEST * search.scale[i]), walk, HERE, NEXT)
         put_between(walk, HERE, NEXT)
@@ -192,7 +192,7 @@ def _go_on(problem, i, search, found, walk, blind):
         return
     doubt = 0.0
     if not blind and here != GROWS:
-        doubt = doubt_between(walk.tools.row, motions, HERE, NEXT, False)
+        doubt = doubt_between(walk.workspace.row, motions, HERE, NEXT, False)
     if doubt <= 1.0 or step <= least:
         _pass(problem, i, search, found, walk, doubt <= 1.0 and not blind and here != GROWS)
         pace[_STEP] = _next_step(step, doubt, walk)
@@ -228,7 +228,7 @@ def _walk_up(problem, i, search, found, walk):
         if target == top and search.sticks[i]:
             keep_at_rest(top, motions, NEXT)
         else:
-            reach(problem, i, search, target, LOOSE, walk, HERE, NEXT)
+            find_motion(problem, i, search, target, LOOSE, walk, HERE, NEXT)
         if motions.kind[NEXT] != NOT_FOUND:
             blind = walk.pace[_LEAP] > 0.0 or motions.kind[HERE] == NOT_FOUND
             walk.pace[_LEAP] = 0.0
@@ -257,7 +257,7 @@ def _fill(first, last, problem, search, found, walk, cancel):
             return
         if problem.r[i] == 0.0:
             continue
-        begin_row(problem, i, walk.tools)
+        begin_row(problem, i, walk.workspace)
         _walk_up(problem, i, search, found, walk)
 
 

@@ -7,7 +7,7 @@ from ..compiler import kernel
 from ..spectral_radius import spectral_radius
 from ..structure.newton import solve_linear
 from .follow import FOLLOWED, MOVED
-from .problem import state_size
+from .problem import SIZE, state_size
 from .return_map import fill_newton, go_round, keep_places, motion_size, return_distance, take_step
 
 #: Kinds of `Steady`; AVERAGED: the motion stops and starts without returning, see `course`.
@@ -60,12 +60,12 @@ def radius_of_two(a, b, c, d):
 
 
 @kernel
-def largest_multiplier(problem, row, halves, precision, work, memory):
+def largest_multiplier(problem, row, halves, precision, motion, memory):
     """Largest modulus of the multipliers, without those of contacts that rest; see `spectral_radius`."""
     size = state_size(problem)
-    fill_newton(problem, row, halves, work, memory)
+    fill_newton(problem, row, halves, motion, memory)
     if halves % 2 == 1:  # a place where a contact rests becomes its mirror image
-        keep_places(problem, row, work, memory, memory.matrix, -1.0)
+        keep_places(problem, row, motion, memory, memory.matrix, -1.0)
     for a in range(size):
         for b in range(size):
             memory.matrix[a, b] = (1.0 if a == b else 0.0) - memory.matrix[a, b]
@@ -73,7 +73,7 @@ def largest_multiplier(problem, row, halves, precision, work, memory):
         return radius_of_two(
             memory.matrix[0, 0], memory.matrix[0, 1], memory.matrix[1, 0], memory.matrix[1, 1]
         )
-    return spectral_radius(memory.matrix, size, work.tangent, precision)
+    return spectral_radius(memory.matrix, size, motion.tangent, precision)
 
 
 @kernel
@@ -96,7 +96,7 @@ def any_drifts(problem, counts, halves):
 
 
 @kernel
-def newton(problem, row, friction, halves, tolerance, work, memory, record):
+def newton(problem, row, friction, halves, tolerance, motion, memory, record):
     """Find the state that returns after some half periods, from the one in `memory.start`.
 
     Parameters
@@ -104,7 +104,7 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
     problem, row, friction : Problem, Row, Friction
     halves : number of half periods
     tolerance : largest change of the state over a return, over its size
-    work, memory, record : Work, Return, Record
+    motion, memory, record : Motion, Return, Record
 
     Returns
     -------
@@ -115,7 +115,7 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
     size = state_size(problem)
     drifting = missed = False
     for _ in range(_MOST_STEPS):
-        code = go_round(problem, row, friction, halves, work, memory, record, True)
+        code = go_round(problem, row, friction, halves, motion, memory, record, True)
         cycles += 0.5 * halves
         if code != FOLLOWED:
             return NO_REPEAT, cycles
@@ -128,11 +128,11 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
                 return NO_REPEAT, cycles
             missed = True
         last = distance
-        fill_newton(problem, row, halves, work, memory)
+        fill_newton(problem, row, halves, motion, memory)
         if not solve_linear(memory.matrix, memory.right, size):
             return NO_REPEAT, cycles
         step = take_step(problem, row, memory)
-        if not (step <= LARGEST and motion_size(problem, row, memory) <= LARGEST * row.numbers[2]):
+        if not (step <= LARGEST and motion_size(problem, row, memory) <= LARGEST * row.numbers[SIZE]):
             return NO_REPEAT, cycles
         if step <= max(tolerance, _LAST):
             return DRIFTS if drifting else REPEATS, cycles
@@ -140,7 +140,7 @@ def newton(problem, row, friction, halves, tolerance, work, memory, record):
 
 
 @kernel
-def least_period(problem, row, friction, halves, base, work, memory, record):
+def least_period(problem, row, friction, halves, base, motion, memory, record):
     """Smallest number of half periods after which a steady state returns, and the periods followed for it.
 
     Parameters
@@ -148,12 +148,12 @@ def least_period(problem, row, friction, halves, base, work, memory, record):
     problem, row, friction : Problem, Row, Friction
     halves : half periods after which it returns
     base : smallest number that is possible
-    work, memory, record : Work, Return, Record
+    motion, memory, record : Motion, Return, Record
     """
     cycles = 0.0
     for shorter in range(base, halves, base):
         if halves % shorter == 0:
-            go_round(problem, row, friction, shorter, work, memory, record, False)
+            go_round(problem, row, friction, shorter, motion, memory, record, False)
             cycles += 0.5 * shorter
             if return_distance(problem, row, memory) <= RETURNED:
                 return shorter, cycles

@@ -8,25 +8,25 @@ from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from .creep import WITHOUT_LIMIT
 from .problem import set_row
-from .record import FORCES, NOTHING
+from .record import FORCES, HIGH, LOW, NOTHING
 from .return_map import from_rest
 from .series import Friction
-from .steady import REPEATS, find, make_tools, measure
+from .steady import REPEATS, find, make_workspace, measure
 
 
 @kernel
-def _fill(problem, i, contact, lines, values, state, limits, tools, friction, out):
+def _fill(problem, i, contact, lines, values, state, limits, workspace, friction, out):
     """Fill the forces; see `fill_holding_force`.
 
     Parameters
     ----------
     problem, i, contact, lines, values, state, out : see `fill_holding_force`
     limits : cycles, tolerance
-    tools, friction : Tools, Friction; their content does not matter
+    workspace, friction : Workspace, Friction; their content does not matter
     """
     cycles, tolerance = limits
-    problem, tools, friction = packed(problem), packed(tools), packed(friction)
-    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    problem, workspace, friction = packed(problem), packed(workspace), packed(friction)
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     set_row(problem, i, row)
     near = False
     for k in range(values.size):
@@ -35,19 +35,28 @@ def _fill(problem, i, contact, lines, values, state, limits, tools, friction, ou
             friction.kinetic[j] = force
             friction.static[j] = force
         if not near:
-            from_rest(problem, row, friction, state, work, memory, record, NOTHING)
+            from_rest(problem, row, friction, state, motion, memory, record, NOTHING)
         found = find(
-            problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course
+            problem,
+            row,
+            friction,
+            cycles,
+            tolerance,
+            motion,
+            memory,
+            workspace.ring,
+            record,
+            workspace.course,
         )
         halves = 0
         if found.status == REPEATS:
             halves, _ = measure(
-                problem, row, friction, found.halves, work, memory, record, tools.ring, FORCES
+                problem, row, friction, found.halves, motion, memory, record, workspace.ring, FORCES
             )
         near = halves > 0
         out[k] = math.nan
         if near:
-            out[k] = 0.5 * (record.forces[1, contact] - record.forces[0, contact])
+            out[k] = 0.5 * (record.forces[HIGH, contact] - record.forces[LOW, contact])
 
 
 @entry
@@ -65,7 +74,7 @@ def fill_holding_force(problem, i, contact, lines, values, state, cycles, tolera
     out : (n,) filled; NaN where no steady state was found
     """
     contacts = lines.shape[0]
-    tools = make_tools(problem, np.empty((0, problem.squares.size)), 0)
+    workspace = make_workspace(problem, np.empty((0, problem.squares.size)), 0)
     friction = Friction(np.empty(contacts), np.empty(contacts))
     limits = cycles, tolerance
-    _fill(problem, i, contact, lines, values, state, limits, tools, friction, out)
+    _fill(problem, i, contact, lines, values, state, limits, workspace, friction, out)

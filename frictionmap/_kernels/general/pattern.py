@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from ..compiler import kernel
-from .problem import set_channels
+from .problem import F, H, P, Q, set_channels
 from .series import factor_held, first_contact_row, solve_held
 
 #: A slider with a velocity below this share of the velocities in it, on its way to zero, arrives with the
@@ -23,78 +23,87 @@ _TIED = 1e-9
 
 _MOST_PIVOTS = 400
 
+#: Rows of the scratch of `settle`: accelerations in the contacts without forces of the participants; forces
+#: and accelerations of the participants; 1 for those that take part; kinetic friction; 1 for those that may
+#: slide; static friction; forces that would hold all participants; 1 where a contact would do otherwise if
+#: all overloaded ones were released at once; sense.
+FREE, FORCE, ACCELERATION, PARTICIPATES, KINETIC, MAY_SLIDE, STATIC, HOLDING, ORDER_MATTERS, _SENSE = range(
+    10
+)
+BOX_ROWS = 10
+
 
 @kernel
-def _free_accelerations(problem, row, work, law):
-    """Fill law[0]: accelerations in the contacts with no force from those that take part (law[3] = 1)."""
+def _free_accelerations(problem, row, motion, box):
+    """Fill the accelerations FREE in the contacts with no force from those that take part."""
     modes, channels = problem.push.shape
     contacts = problem.spring.size
-    series, first = work.series, first_contact_row(problem)
+    series, first = motion.series, first_contact_row(problem)
     for j in range(contacts):
-        law[0, j] = 0.0
+        box[FREE, j] = 0.0
         for d in range(channels):
-            law[0, j] -= problem.base[j, d] * (2.0 * series[modes + d, 2])
+            box[FREE, j] -= problem.base[j, d] * (2.0 * series[modes + d, 2])
     for m in range(modes):
-        found = -row.stiffness[m] * work.state[0, m]
+        found = -row.stiffness[m] * motion.state[Q, m]
         if problem.coupled:
             for other in range(modes):
-                found -= row.damping[m, other] * work.state[1, other]
+                found -= row.damping[m, other] * motion.state[P, other]
         else:
-            found -= row.damping[m, m] * work.state[1, m]
+            found -= row.damping[m, m] * motion.state[P, m]
         for d in range(channels):
             found += row.push[d, m] * series[modes + d, 0]
         for j in range(contacts):
-            if law[3, j] == 0.0:
+            if box[PARTICIPATES, j] == 0.0:
                 found -= row.reaction[j, m] * series[first + 2 * contacts + j, 0]
         for j in range(contacts):
-            law[0, j] += problem.chi[j, m] * found
+            box[FREE, j] += problem.chi[j, m] * found
 
 
 @kernel
-def _forces_of_choice(problem, row, work, law):
-    """Fill the forces law[1] and accelerations law[2] of the participants for the choice in `work.sense`."""
-    contacts = work.sense.size
-    if not factor_held(problem, row, work):
+def _forces_of_choice(problem, row, motion, box):
+    """Fill FORCE and ACCELERATION of the participants for the choice in `motion.sense`."""
+    contacts = motion.sense.size
+    if not factor_held(problem, row, motion):
         return False
-    right = work.solve[contacts]
+    right = motion.solve[contacts]
     for j in range(contacts):
-        if law[3, j] != 0.0 and work.sense[j] != 0:
-            law[1, j] = work.sense[j] * law[4, j]
-    for a in range(work.held[contacts]):
-        j = work.held[a]
-        right[a] = law[0, j]
+        if box[PARTICIPATES, j] != 0.0 and motion.sense[j] != 0:
+            box[FORCE, j] = motion.sense[j] * box[KINETIC, j]
+    for a in range(motion.held[contacts]):
+        j = motion.held[a]
+        right[a] = box[FREE, j]
         for other in range(contacts):
-            if law[3, other] != 0.0 and work.sense[other] != 0:
-                right[a] -= row.mobility[j, other] * law[1, other]
-    solve_held(work, right)
-    for a in range(work.held[contacts]):
-        law[1, work.held[a]] = right[a]
+            if box[PARTICIPATES, other] != 0.0 and motion.sense[other] != 0:
+                right[a] -= row.mobility[j, other] * box[FORCE, other]
+    solve_held(motion, right)
+    for a in range(motion.held[contacts]):
+        box[1, motion.held[a]] = right[a]
     for j in range(contacts):
-        law[2, j] = 0.0
-        if law[3, j] != 0.0 and work.sense[j] != 0:
-            law[2, j] = law[0, j]
+        box[ACCELERATION, j] = 0.0
+        if box[PARTICIPATES, j] != 0.0 and motion.sense[j] != 0:
+            box[ACCELERATION, j] = box[FREE, j]
             for other in range(contacts):
-                if law[3, other] != 0.0:
-                    law[2, j] -= row.mobility[j, other] * law[1, other]
+                if box[PARTICIPATES, other] != 0.0:
+                    box[ACCELERATION, j] -= row.mobility[j, other] * box[FORCE, other]
     return True
 
 
 @kernel
-def _box_law(problem, row, work, law):
-    """Flip the first contact that is wrong until none is; law[5] = 1 marks those that may slide."""
-    contacts = work.sense.size
+def _box_law(problem, row, motion, box):
+    """Flip the first contact that is wrong, of those that may slide, until none is."""
+    contacts = motion.sense.size
     for _ in range(_MOST_PIVOTS):
-        if not _forces_of_choice(problem, row, work, law):
+        if not _forces_of_choice(problem, row, motion, box):
             return False
         flipped = False
         for j in range(contacts):
-            if law[3, j] == 0.0 or law[5, j] == 0.0:
+            if box[PARTICIPATES, j] == 0.0 or box[MAY_SLIDE, j] == 0.0:
                 continue
-            if work.sense[j] == 0 and abs(law[1, j]) > law[4, j]:
-                work.sense[j] = 1 if law[1, j] > 0.0 else -1
+            if motion.sense[j] == 0 and abs(box[FORCE, j]) > box[KINETIC, j]:
+                motion.sense[j] = 1 if box[FORCE, j] > 0.0 else -1
                 flipped = True
-            elif work.sense[j] != 0 and work.sense[j] * law[2, j] < 0.0:
-                work.sense[j] = 0
+            elif motion.sense[j] != 0 and motion.sense[j] * box[ACCELERATION, j] < 0.0:
+                motion.sense[j] = 0
                 flipped = True
             if flipped:
                 break
@@ -104,34 +113,38 @@ def _box_law(problem, row, work, law):
 
 
 @kernel
-def _let_go(work, law, least):
+def _release_loads(motion, box, least):
     """Let every held contact with mu > 1 slide whose force is at least `least` times its static friction."""
-    for j in range(work.sense.size):
-        if law[3, j] != 0.0 and law[5, j] == 0.0 and abs(law[1, j]) >= least * law[6, j]:
-            law[5, j] = 1.0
-            work.sense[j] = 1 if law[1, j] > 0.0 else -1
+    for j in range(motion.sense.size):
+        if (
+            box[PARTICIPATES, j] != 0.0
+            and box[MAY_SLIDE, j] == 0.0
+            and abs(box[FORCE, j]) >= least * box[STATIC, j]
+        ):
+            box[MAY_SLIDE, j] = 1.0
+            motion.sense[j] = 1 if box[FORCE, j] > 0.0 else -1
 
 
 @kernel
-def _overloads(work, law):
+def _overloads(motion, box):
     """Largest and smallest share, above 1, that the force of a held contact with mu > 1 has of its static
-    friction, law[6]; 1 where none is overloaded.
+    friction; 1 where none is overloaded.
     """
     worst, least = 1.0, math.inf
-    for j in range(work.sense.size):
-        if law[3, j] != 0.0 and law[5, j] == 0.0 and abs(law[1, j]) > law[6, j]:
-            share = abs(law[1, j]) / law[6, j]
+    for j in range(motion.sense.size):
+        if box[PARTICIPATES, j] != 0.0 and box[MAY_SLIDE, j] == 0.0 and abs(box[FORCE, j]) > box[STATIC, j]:
+            share = abs(box[FORCE, j]) / box[STATIC, j]
             worst, least = max(worst, share), min(least, share)
     return worst, min(least, worst)
 
 
 @kernel
-def _release(problem, row, work, law, released, at_once):
+def _release(problem, row, motion, box, released, at_once):
     """Let contacts go until no load exceeds its static friction, beginning with all participants held.
 
     Parameters
     ----------
-    problem, row, work, law : see `settle`; law[1] holds the forces that hold all participants
+    problem, row, motion, box : see `settle`; FORCE holds all participants
     released : contact that is released; -1: none
     at_once : whether all overloaded contacts with mu > 1 let go at once; else the most overloaded one
 
@@ -141,121 +154,123 @@ def _release(problem, row, work, law, released, at_once):
         once, and not tied
     """
     if released >= 0:
-        law[5, released] = 1.0
-        work.sense[released] = 1 if law[1, released] > 0.0 else -1
-        _let_go(work, law, 1.0 - _TIED)
-    if not _box_law(problem, row, work, law):
+        box[MAY_SLIDE, released] = 1.0
+        motion.sense[released] = 1 if box[FORCE, released] > 0.0 else -1
+        _release_loads(motion, box, 1.0 - _TIED)
+    if not _box_law(problem, row, motion, box):
         return False, False
     several = False
-    for _ in range(work.sense.size):
-        worst, least = _overloads(work, law)
+    for _ in range(motion.sense.size):
+        worst, least = _overloads(motion, box)
         if worst == 1.0:
             break
         several = several or least < worst * (1.0 - _TIED)
-        _let_go(work, law, (least if at_once else worst) * (1.0 - _TIED))
-        if not _box_law(problem, row, work, law):
+        _release_loads(motion, box, (least if at_once else worst) * (1.0 - _TIED))
+        if not _box_law(problem, row, motion, box):
             return False, several
     return True, several
 
 
 @kernel
-def _hold_participants(work, law):
+def _hold_participants(motion, box):
     """Hold all that take part; those with mu = 1 may slide."""
-    for j in range(work.sense.size):
-        if law[3, j] != 0.0:
-            work.sense[j] = 0
-        law[5, j] = 1.0 if law[6, j] <= law[4, j] else 0.0
+    for j in range(motion.sense.size):
+        if box[PARTICIPATES, j] != 0.0:
+            motion.sense[j] = 0
+        box[MAY_SLIDE, j] = 1.0 if box[STATIC, j] <= box[KINETIC, j] else 0.0
 
 
 @kernel
-def _mark_order(problem, row, work, law, released):
-    """Mark in law[8] the contacts that would do otherwise if all overloaded ones let go at once.
+def _mark_order(problem, row, motion, box, released):
+    """Mark the contacts that would do otherwise if all overloaded ones were released at once: ORDER_MATTERS.
 
     The pattern stays that of the rule; see `settle`.
     """
-    contacts = work.sense.size
+    contacts = motion.sense.size
     for j in range(contacts):
-        law[9, j] = work.sense[j]
-        law[1, j] = law[7, j]
-    _hold_participants(work, law)
-    determined, _ = _release(problem, row, work, law, released, True)
+        box[_SENSE, j] = motion.sense[j]
+        box[FORCE, j] = box[HOLDING, j]
+    _hold_participants(motion, box)
+    determined, _ = _release(problem, row, motion, box, released, True)
     for j in range(contacts):
-        law[8, j] = 1.0 if determined and work.sense[j] != law[9, j] else 0.0
-        work.sense[j] = int(law[9, j])
-    return _forces_of_choice(problem, row, work, law)
+        box[ORDER_MATTERS, j] = 1.0 if determined and motion.sense[j] != box[_SENSE, j] else 0.0
+        motion.sense[j] = int(box[_SENSE, j])
+    return _forces_of_choice(problem, row, motion, box)
 
 
 @kernel
-def _arrives_too(problem, row, work, law, j):
+def _arrives_too(problem, row, motion, box, j):
     """Whether a slider reaches velocity zero together with the contact whose arrival was found."""
     modes, channels = problem.push.shape
-    series = work.series
-    w = -row.numbers[0] * problem.belt[j]
+    series = motion.series
+    w = -row.numbers[H] * problem.belt[j]
     size = abs(w)
     for m in range(modes):
-        part = problem.chi[j, m] * work.state[1, m]
+        part = problem.chi[j, m] * motion.state[P, m]
         w += part
         size += abs(part)
     for d in range(channels):
         w -= problem.base[j, d] * series[modes + d, 1]
-    return abs(w) <= _TOGETHER * size and work.sense[j] * law[0, j] <= 0.0
+    return abs(w) <= _TOGETHER * size and motion.sense[j] * box[FREE, j] <= 0.0
 
 
 @kernel
-def stop_exactly(problem, row, work):
-    """Take the rounding error of their velocities from the participants; `work.held` lists them."""
+def stop_exactly(problem, row, motion):
+    """Take the rounding error of their velocities from the participants; `motion.held` lists them."""
     modes, channels = problem.push.shape
-    contacts = work.sense.size
-    series, right = work.series, work.solve[contacts]
-    for a in range(work.held[contacts]):
-        j = work.held[a]
-        right[a] = -row.numbers[0] * problem.belt[j]
+    contacts = motion.sense.size
+    series, right = motion.series, motion.solve[contacts]
+    for a in range(motion.held[contacts]):
+        j = motion.held[a]
+        right[a] = -row.numbers[H] * problem.belt[j]
         for m in range(modes):
-            right[a] += problem.chi[j, m] * work.state[1, m]
+            right[a] += problem.chi[j, m] * motion.state[P, m]
         for d in range(channels):
             right[a] -= problem.base[j, d] * series[modes + d, 1]
-    solve_held(work, right)
-    for a in range(work.held[contacts]):
+    solve_held(motion, right)
+    for a in range(motion.held[contacts]):
         for m in range(modes):
-            work.state[1, m] -= row.reaction[work.held[a], m] * right[a]
+            motion.state[P, m] -= row.reaction[motion.held[a], m] * right[a]
 
 
 @kernel
-def _take_part(problem, row, friction, tau, work, law):
-    """Decide which contacts take part in what follows an event (law[3]), and their friction there."""
-    contacts = work.sense.size
-    series, first = work.series, first_contact_row(problem)
-    set_channels(problem, row, tau, -1, work)
+def _take_part(problem, row, friction, tau, motion, box):
+    """Decide which contacts take part in what follows an event, and their friction there."""
+    contacts = motion.sense.size
+    series, first = motion.series, first_contact_row(problem)
+    set_channels(problem, row, tau, -1, motion)
     for j in range(contacts):
         nu = 1.0
         for d in range(problem.push.shape[1]):
             nu += problem.normal[j, d] * series[problem.push.shape[0] + d, 0]
-        law[4, j] = friction.kinetic[j] * nu
-        law[6, j] = friction.static[j] * nu
-        law[3, j] = 0.0
-        if problem.spring[j] == 0.0 and work.sense[j] == 0:
-            law[3, j] = 1.0
-        series[first + 2 * contacts + j, 0] = work.sense[j] * law[4, j]
-        if problem.spring[j] != 0.0 and work.sense[j] == 0:
-            series[first + 2 * contacts + j, 0] = work.state[2, j]
-    _free_accelerations(problem, row, work, law)
+        box[KINETIC, j] = friction.kinetic[j] * nu
+        box[STATIC, j] = friction.static[j] * nu
+        box[PARTICIPATES, j] = 0.0
+        if problem.spring[j] == 0.0 and motion.sense[j] == 0:
+            box[PARTICIPATES, j] = 1.0
+        series[first + 2 * contacts + j, 0] = motion.sense[j] * box[KINETIC, j]
+        if problem.spring[j] != 0.0 and motion.sense[j] == 0:
+            series[first + 2 * contacts + j, 0] = motion.state[F, j]
+    _free_accelerations(problem, row, motion, box)
     for j in range(contacts):
-        if law[3, j] == 0.0 and problem.spring[j] == 0.0 and _arrives_too(problem, row, work, law, j):
-            law[3, j] = 1.0
+        if (
+            box[PARTICIPATES, j] == 0.0
+            and problem.spring[j] == 0.0
+            and _arrives_too(problem, row, motion, box, j)
+        ):
+            box[PARTICIPATES, j] = 1.0
 
 
 @kernel
-def settle(problem, row, friction, tau, work, law, arrived, released):
+def settle(problem, row, friction, tau, motion, box, arrived, released):
     """Decide the pattern after a contact has arrived at velocity zero, or was released with a drop of force.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
     tau : phase of the load
-    work : Work; state and pattern of the instant; the pattern is replaced
-    law : (10, N) scratch: accelerations, forces, accelerations of sliders, participants, kinetic friction,
-        whether a participant may slide, static friction, forces that would hold all participants, whether
-        the contact would do otherwise if all overloaded ones let go at once, pattern
+    motion : Motion; state and pattern of the instant; the pattern is replaced
+    box : (BOX_ROWS, N) scratch, see FREE
     arrived : contact that has arrived; -1: none
     released : contact that is released; -1: none
 
@@ -263,38 +278,38 @@ def settle(problem, row, friction, tau, work, law, arrived, released):
     -------
     bool : False if the contacts do not determine their forces
     """
-    contacts = work.sense.size
-    _take_part(problem, row, friction, tau, work, law)
+    contacts = motion.sense.size
+    _take_part(problem, row, friction, tau, motion, box)
     if arrived >= 0:
-        law[3, arrived] = 1.0
-    _free_accelerations(problem, row, work, law)
-    _hold_participants(work, law)
-    if not _forces_of_choice(problem, row, work, law):
+        box[PARTICIPATES, arrived] = 1.0
+    _free_accelerations(problem, row, motion, box)
+    _hold_participants(motion, box)
+    if not _forces_of_choice(problem, row, motion, box):
         return False
     for j in range(contacts):
-        law[7, j] = law[1, j]
-        law[8, j] = 0.0
-    stop_exactly(problem, row, work)
-    determined, several = _release(problem, row, work, law, released, False)
+        box[HOLDING, j] = box[FORCE, j]
+        box[ORDER_MATTERS, j] = 0.0
+    stop_exactly(problem, row, motion)
+    determined, several = _release(problem, row, motion, box, released, False)
     if determined and several:
-        return _mark_order(problem, row, work, law, released)
+        return _mark_order(problem, row, motion, box, released)
     return determined
 
 
 @kernel
-def _ends_rest(problem, work, j):
+def _ends_rest(problem, motion, j):
     """Whether the contacts that keep both ends of a spring at rest are all held."""
     tied = False
-    for i in range(work.sense.size):
+    for i in range(motion.sense.size):
         if problem.ties[j, i]:
             tied = True
-            if work.sense[i] != 0:
+            if motion.sense[i] != 0:
                 return False
     return tied
 
 
 @kernel
-def rest_springs(problem, friction, work, order):
+def rest_springs(problem, friction, motion, order):
     """Bring springs to rest between ends that are at rest now, and let those go whose ends are not any more.
 
     Between ends at rest the velocity is zero for as long as they rest, and the force constant: neither is
@@ -305,45 +320,45 @@ def rest_springs(problem, friction, work, order):
     Parameters
     ----------
     problem, friction : Problem, Friction
-    work : Work; senses, forces and `fresh` of the springs are set
+    motion : Motion; senses, forces and `fresh` of the springs are set
     order : number of leading terms of the velocities that are zero where ends begin to move: 1 after a jump
         of a force, else 2
     """
-    for j in range(work.sense.size):
-        rests = _ends_rest(problem, work, j)
+    for j in range(motion.sense.size):
+        rests = _ends_rest(problem, motion, j)
         limit = friction.kinetic[j]
-        if rests and work.sense[j] != 0:
-            work.state[2, j] = work.sense[j] * limit
-            work.sense[j] = 0
+        if rests and motion.sense[j] != 0:
+            motion.state[F, j] = motion.sense[j] * limit
+            motion.sense[j] = 0
         if rests:
-            work.fresh[j] = 0
-        elif work.idle[j] and abs(work.state[2, j]) >= limit:  # beyond it by rounding error
-            sign = 1 if work.state[2, j] > 0.0 else -1
-            work.state[2, j] = sign * limit
-            work.fresh[j] = sign * (1 + order)
-        work.idle[j] = rests
+            motion.fresh[j] = 0
+        elif motion.idle[j] and abs(motion.state[F, j]) >= limit:  # beyond it by rounding error
+            sign = 1 if motion.state[F, j] > 0.0 else -1
+            motion.state[F, j] = sign * limit
+            motion.fresh[j] = sign * (1 + order)
+        motion.idle[j] = rests
 
 
 @kernel
-def begin(problem, row, friction, tau, work, law):
+def begin(problem, row, friction, tau, motion, box):
     """Decide the pattern of a state at the start, from its velocities; elastic contacts begin at rest, their
     springs unloaded.
     """
     modes, channels = problem.push.shape
-    contacts = work.sense.size
-    work.clock[0] = math.nan
-    set_channels(problem, row, tau, -1, work)
+    contacts = motion.sense.size
+    motion.clock[0] = math.nan
+    set_channels(problem, row, tau, -1, motion)
     for j in range(contacts):
-        w = -row.numbers[0] * problem.belt[j]
+        w = -row.numbers[H] * problem.belt[j]
         for m in range(modes):
-            w += problem.chi[j, m] * work.state[1, m]
+            w += problem.chi[j, m] * motion.state[P, m]
         for d in range(channels):
-            w -= problem.base[j, d] * work.series[modes + d, 1]
-        work.fresh[j] = 0
-        work.sense[j] = int(np.sign(w)) if problem.spring[j] == 0.0 else 0
-    if not settle(problem, row, friction, tau, work, law, -1, -1):
+            w -= problem.base[j, d] * motion.series[modes + d, 1]
+        motion.fresh[j] = 0
+        motion.sense[j] = int(np.sign(w)) if problem.spring[j] == 0.0 else 0
+    if not settle(problem, row, friction, tau, motion, box, -1, -1):
         return False
     for j in range(contacts):
-        if law[3, j] != 0.0 and work.sense[j] != 0:
-            work.fresh[j] = 1
+        if box[PARTICIPATES, j] != 0.0 and motion.sense[j] != 0:
+            motion.fresh[j] = 1
     return True

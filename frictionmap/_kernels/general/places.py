@@ -13,12 +13,12 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from ..structure.newton import solve_linear
-from .creep import WITHOUT_LIMIT
+from .creep import WITHOUT_LIMIT, keep_friction, restore_friction
 from .follow import FOLLOWED, MOVED
 from .orbits import NO_REPEAT, REPEATS, newton
 from .pattern import stop_exactly
-from .problem import SECTION, padded, set_channels
-from .record import FORCES, NOTHING, clear_record, varies
+from .problem import SECTION, F, H, P, Q, R, padded, set_channels
+from .record import FORCES, HIGH, LOW, NOTHING, clear_record, varies
 from .return_map import (
     begins_held,
     copy_motion,
@@ -61,7 +61,7 @@ class Places(NamedTuple):
     """The contacts at rest in a steady state, and its forces."""
 
     rests: np.ndarray  # (N,) int: 1 for contacts that rest permanently
-    limits: np.ndarray  # (2, N) kinetic and static friction, where contacts are held
+    limits: np.ndarray  # (2, N) friction of a cell while contacts are held, see `creep`
     orbit: np.ndarray  # (3, ...) the steady state at the section
     senses: np.ndarray  # (N,) its pattern there
     at: np.ndarray  # (N,) places in it
@@ -102,20 +102,6 @@ def find_rests(memory, places):
 
 
 @kernel
-def keep_limits(friction, places):
-    """Keep the friction of a cell, which contacts have again after `restore_limits`."""
-    for j in range(places.rests.size):
-        places.limits[0, j], places.limits[1, j] = friction.kinetic[j], friction.static[j]
-
-
-@kernel
-def restore_limits(friction, places):
-    """Give the contacts the friction that was kept."""
-    for j in range(places.rests.size):
-        friction.kinetic[j], friction.static[j] = places.limits[0, j], places.limits[1, j]
-
-
-@kernel
 def _lift_limits(friction, places):
     """Hold the contacts at rest, whatever their force."""
     for j in range(places.rests.size):
@@ -124,29 +110,29 @@ def _lift_limits(friction, places):
 
 
 @kernel
-def stop_contacts(problem, row, work, memory):
+def stop_contacts(problem, row, motion, memory):
     """Take the velocities of held contacts from the state in `memory.start`; False if they close a loop."""
-    put_state(memory.start, memory.senses, work)
-    work.clock[0] = math.nan
-    set_channels(problem, row, SECTION, 0, work)
-    if not factor_held(problem, row, work):
+    put_state(memory.start, memory.senses, motion)
+    motion.clock[0] = math.nan
+    set_channels(problem, row, SECTION, 0, motion)
+    if not factor_held(problem, row, motion):
         return False
-    stop_exactly(problem, row, work)
-    take_state(work, memory.start, memory.senses, 1.0)
+    stop_exactly(problem, row, motion)
+    take_state(motion, memory.start, memory.senses, 1.0)
     return True
 
 
 @kernel
-def _place(problem, state, work, j):
+def _place(problem, state, motion, j):
     """Place of a contact, of an elastic one that of its slider; the channels are those of the section."""
     modes, channels = problem.push.shape
     place = 0.0
     for m in range(modes):
-        place += problem.chi[j, m] * state[0, m]
+        place += problem.chi[j, m] * state[Q, m]
     for d in range(channels):
-        place -= problem.base[j, d] * work.series[modes + d, 0]
+        place -= problem.base[j, d] * motion.series[modes + d, 0]
     if problem.spring[j] != 0.0:
-        place -= state[2, j] / problem.spring[j]
+        place -= state[F, j] / problem.spring[j]
     return place
 
 
@@ -188,7 +174,7 @@ def _fill_moved(problem, change, moved):
 
 
 @kernel
-def _gain(problem, row, work, places, j):
+def _gain(problem, row, motion, places, j):
     """Largest force in contact j at rest, over the size of a difference of two motions; see `_difference`.
 
     The force that holds a rigid contact depends linearly on the displacements, the velocities and the forces
@@ -196,15 +182,15 @@ def _gain(problem, row, work, places, j):
     """
     contacts, modes = problem.chi.shape
     if problem.spring[j] != 0.0:
-        return math.sqrt(problem.spring[j] * row.numbers[1] ** 2 / row.numbers[0] ** 2)
-    right = work.solve[contacts]
-    for a in range(work.held[contacts]):
-        right[a] = 1.0 if work.held[a] == j else 0.0
-    solve_held(work, right)
+        return math.sqrt(problem.spring[j] * row.numbers[R] ** 2 / row.numbers[H] ** 2)
+    right = motion.solve[contacts]
+    for a in range(motion.held[contacts]):
+        right[a] = 1.0 if motion.held[a] == j else 0.0
+    solve_held(motion, right)
     for m in range(modes):
         places.columns[m] = 0.0
-        for a in range(work.held[contacts]):
-            places.columns[m] += right[a] * problem.chi[work.held[a], m]
+        for a in range(motion.held[contacts]):
+            places.columns[m] += right[a] * problem.chi[motion.held[a], m]
     square = 0.0
     for m in range(modes):
         square += places.columns[m] ** 2 * row.stiffness[m]
@@ -217,50 +203,53 @@ def _gain(problem, row, work, places, j):
             push = 0.0
             for m in range(modes):
                 push += places.columns[m] * row.reaction[other, m]
-            square += push * push * problem.spring[other] * row.numbers[1] ** 2 / row.numbers[0] ** 2
+            square += push * push * problem.spring[other] * row.numbers[R] ** 2 / row.numbers[H] ** 2
     return math.sqrt(square)
 
 
 @kernel
-def _fill_gains(problem, row, work, places):
+def _fill_gains(problem, row, motion, places):
     """Fill the gains, with the contacts at rest held and no others."""
     for j in range(places.rests.size):
-        work.sense[j] = 1 - places.rests[j]
-    if not factor_held(problem, row, work):
+        motion.sense[j] = 1 - places.rests[j]
+    if not factor_held(problem, row, motion):
         return False
     for j in range(places.rests.size):
-        places.gains[j] = _gain(problem, row, work, places, j) if places.rests[j] != 0 else 0.0
+        places.gains[j] = _gain(problem, row, motion, places, j) if places.rests[j] != 0 else 0.0
     return True
 
 
 @kernel
-def keep_orbit(problem, row, friction, halves, work, memory, record, places):
+def keep_orbit(problem, row, friction, halves, motion, memory, record, places):
     """Keep the steady state in `memory.start`, with the forces in its contacts at rest; False if that fails.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
     halves : even number of half periods after which it returns
-    work, memory, record, places : Work, Return, Record, Places with the contacts at rest, their flexibility
+    motion, memory, record, places : Motion, Return, Record, Places with contacts at rest, their flexibility
     """
     copy_motion(memory.start, memory.senses, places.orbit, places.senses)
-    if not _fill_gains(problem, row, work, places):
+    if not _fill_gains(problem, row, motion, places):
         return False
-    keep_limits(friction, places)
+    keep_friction(friction, places.limits)
     contacts = places.rests.size
     for j in range(contacts):
         record.limits[j] = friction.static[j] if varies(problem, j) else 0.0
     _lift_limits(friction, places)
     clear_record(record)
     record.active[0] = FORCES
-    code = go_round(problem, row, friction, halves, work, memory, record, False)
+    code = go_round(problem, row, friction, halves, motion, memory, record, False)
     record.active[0] = NOTHING
-    restore_limits(friction, places)
-    work.clock[0] = math.nan
-    set_channels(problem, row, SECTION, 0, work)
+    restore_friction(friction, places.limits)
+    motion.clock[0] = math.nan
+    set_channels(problem, row, SECTION, 0, motion)
     for j in range(contacts):
-        places.at[j] = _place(problem, places.orbit, work, j)
-        places.forces[0, j], places.forces[1, j] = record.forces[0, contacts + j], record.forces[1, j]
+        places.at[j] = _place(problem, places.orbit, motion, j)
+        places.forces[LOW, j], places.forces[HIGH, j] = (
+            record.forces[LOW, contacts + j],
+            record.forces[HIGH, j],
+        )
         record.limits[j] = 0.0
     return code == FOLLOWED
 
@@ -274,23 +263,23 @@ def _difference(problem, row, memory, places):
     contacts, modes = problem.chi.shape
     square = 0.0
     for m in range(modes):
-        place = memory.start[0, m] - places.orbit[0, m] - places.moved[m]
-        velocity = memory.start[1, m] - places.orbit[1, m]
+        place = memory.start[Q, m] - places.orbit[Q, m] - places.moved[m]
+        velocity = memory.start[P, m] - places.orbit[P, m]
         square += velocity * velocity + row.stiffness[m] * place * place
     for j in range(contacts):
         if problem.spring[j] != 0.0:
-            force = memory.start[2, j] - places.orbit[2, j] - places.change[j]
-            square += force * force * row.numbers[0] ** 2 / (row.numbers[1] ** 2 * problem.spring[j])
+            force = memory.start[F, j] - places.orbit[F, j] - places.change[j]
+            square += force * force * row.numbers[H] ** 2 / (row.numbers[R] ** 2 * problem.spring[j])
     return math.sqrt(square)
 
 
 @kernel
-def _compare(problem, row, work, memory, places):
+def _compare(problem, row, motion, memory, places):
     """Fill `places.change` of the motion in `memory.start`; the size of its difference otherwise."""
-    work.clock[0] = math.nan
-    set_channels(problem, row, SECTION, 0, work)
+    motion.clock[0] = math.nan
+    set_channels(problem, row, SECTION, 0, motion)
     for j in range(places.rests.size):
-        places.change[j] = _place(problem, memory.start, work, j) - places.at[j]
+        places.change[j] = _place(problem, memory.start, motion, j) - places.at[j]
     if not _forces_of(places, places.change):
         return math.inf
     _fill_moved(problem, places.change, places.moved)
@@ -301,8 +290,8 @@ def _compare(problem, row, work, memory, places):
 def _sides(problem, friction, places, j):
     """Largest forces of both signs in a contact at rest, above its friction, at the places of the motion."""
     limit = 0.0 if varies(problem, j) else friction.static[j]
-    high = places.forces[1, j] + places.change[j] - limit
-    low = places.forces[0, j] + places.change[j] + limit
+    high = places.forces[HIGH, j] + places.change[j] - limit
+    low = places.forces[LOW, j] + places.change[j] + limit
     return high, -low
 
 
@@ -394,7 +383,7 @@ def _unload(problem, friction, places):
 
 
 @kernel
-def follow_to_rest(problem, row, friction, halves, cycles, safety, work, memory, record, places):
+def follow_to_rest(problem, row, friction, halves, cycles, safety, motion, memory, record, places):
     """Follow the motion from `memory.start` until the places of the contacts at rest are known.
 
     Parameters
@@ -403,8 +392,8 @@ def follow_to_rest(problem, row, friction, halves, cycles, safety, work, memory,
     halves : even number of half periods after which the steady state returns
     cycles : periods of the load to follow at most
     safety : see `_SAFETY`; 1 where all contacts rest
-    work, memory, record, places : Work, Return, Record, Places after `keep_orbit`; `places.change` becomes
-        that of the places of the motion
+    motion, memory, record, places : Motion, Return, Record, Places after `keep_orbit`; `places.change`
+        becomes that of the places of the motion
 
     Returns
     -------
@@ -414,14 +403,14 @@ def follow_to_rest(problem, row, friction, halves, cycles, safety, work, memory,
     for j in range(places.rests.size):
         places.creep[_PERIODS, j] = places.creep[_SLOWLY, j] = 0.0
     while True:
-        difference = _compare(problem, row, work, memory, places)
+        difference = _compare(problem, row, motion, memory, places)
         if followed > 0.0:
             _note_creep(problem, friction, memory, places)
         if _is_settled(problem, friction, difference, safety, places) or still >= _STILL:
             return True, followed
         if followed >= cycles:
             return False, followed
-        if go_round(problem, row, friction, halves, work, memory, record, False) != FOLLOWED:
+        if go_round(problem, row, friction, halves, motion, memory, record, False) != FOLLOWED:
             return False, followed
         take_end(memory)
         followed += 0.5 * halves
@@ -436,32 +425,32 @@ def _move(problem, memory, places):
     """Move the state in `memory.start` by the constant forces `places.change` in the contacts at rest."""
     _fill_moved(problem, places.change, places.moved)
     for m in range(problem.push.shape[0]):
-        memory.start[0, m] += places.moved[m]
+        memory.start[Q, m] += places.moved[m]
     for j in range(places.rests.size):
         if problem.spring[j] != 0.0:
-            memory.start[2, j] += places.change[j]
+            memory.start[F, j] += places.change[j]
 
 
 @kernel
-def _move_to_zero(problem, row, work, memory, places):
+def _move_to_zero(problem, row, motion, memory, places):
     """Move the state in `memory.start` so that the contacts at rest are at the place 0."""
-    work.clock[0] = math.nan
-    set_channels(problem, row, SECTION, 0, work)
+    motion.clock[0] = math.nan
+    set_channels(problem, row, SECTION, 0, motion)
     for j in range(places.rests.size):
-        places.change[j] = -_place(problem, memory.start, work, j)
+        places.change[j] = -_place(problem, memory.start, motion, j)
     if _forces_of(places, places.change):
         _move(problem, memory, places)
 
 
 @kernel
-def keep_orbit_anew(problem, row, friction, halves, tolerance, bits, work, memory, record, places):
+def keep_orbit_anew(problem, row, friction, halves, tolerance, bits, motion, memory, record, places):
     """Keep a steady state as `keep_orbit` does, with bits that do not depend on how it was found.
 
     It is found anew from its rounded state at the place 0.
 
     Parameters
     ----------
-    problem, row, friction, halves, work, memory, record, places : see `keep_orbit`
+    problem, row, friction, halves, motion, memory, record, places : see `keep_orbit`
     tolerance : see `steady.find`
     bits : see `round_state`
 
@@ -470,22 +459,22 @@ def keep_orbit_anew(problem, row, friction, halves, tolerance, bits, work, memor
     (kept, cycles) : whether that was possible; periods followed
     """
     fill_flexibility(problem, places)
-    _move_to_zero(problem, row, work, memory, places)
-    keep_limits(friction, places)
+    _move_to_zero(problem, row, motion, memory, places)
+    keep_friction(friction, places.limits)
     _lift_limits(friction, places)
     round_state(problem, friction, memory, bits)
     status, cycles = NO_REPEAT, 0.0
-    if stop_contacts(problem, row, work, memory):
-        status, cycles = newton(problem, row, friction, halves, tolerance, work, memory, record)
-    restore_limits(friction, places)
+    if stop_contacts(problem, row, motion, memory):
+        status, cycles = newton(problem, row, friction, halves, tolerance, motion, memory, record)
+    restore_friction(friction, places.limits)
     if status != REPEATS:
         return False, cycles
-    kept = keep_orbit(problem, row, friction, halves, work, memory, record, places)
+    kept = keep_orbit(problem, row, friction, halves, motion, memory, record, places)
     return kept, cycles + 0.5 * halves
 
 
 @kernel
-def settle_places(problem, row, friction, halves, cycles, work, memory, record, places):
+def settle_places(problem, row, friction, halves, cycles, motion, memory, record, places):
     """Find the steady state with the places that the motion from `memory.start` leads to.
 
     Parameters
@@ -493,8 +482,8 @@ def settle_places(problem, row, friction, halves, cycles, work, memory, record, 
     problem, row, friction : Problem, Row, Friction; contacts at rest get a friction without limit
     halves : even number of half periods after which the steady state returns
     cycles : periods of the load to follow at most
-    work, memory, record, places : Work, Return, Record, Places after `keep_orbit`; `memory.start` is replaced
-        by the steady state
+    motion, memory, record, places : Motion, Return, Record, Places after `keep_orbit`; `memory.start` becomes
+        the steady state
 
     Returns
     -------
@@ -504,7 +493,7 @@ def settle_places(problem, row, friction, halves, cycles, work, memory, record, 
     for j in range(places.rests.size):
         slide += 1 - places.rests[j]
     known, followed = follow_to_rest(
-        problem, row, friction, halves, cycles, _SAFETY if slide > 0 else 1.0, work, memory, record, places
+        problem, row, friction, halves, cycles, _SAFETY if slide > 0 else 1.0, motion, memory, record, places
     )
     _unload(problem, friction, places)
     _lift_limits(friction, places)
@@ -526,28 +515,28 @@ def _hold_all(friction, memory, places):
 
 
 @kernel
-def keep_held(problem, row, friction, tolerance, work, memory, record, places):
+def keep_held(problem, row, friction, tolerance, motion, memory, record, places):
     """Keep the steady state in which all contacts rest at the place 0; False if none was found.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
     tolerance : see `steady.find`
-    work, memory, record, places : Work, Return, Record, Places
+    motion, memory, record, places : Motion, Return, Record, Places
     """
-    keep_limits(friction, places)
+    keep_friction(friction, places.limits)
     _hold_all(friction, memory, places)
     fill_flexibility(problem, places)
-    if not stop_contacts(problem, row, work, memory):
+    if not stop_contacts(problem, row, motion, memory):
         return False
-    status, _ = newton(problem, row, friction, 2, tolerance, work, memory, record)
-    restore_limits(friction, places)
-    _move_to_zero(problem, row, work, memory, places)
-    return status == REPEATS and keep_orbit(problem, row, friction, 2, work, memory, record, places)
+    status, _ = newton(problem, row, friction, 2, tolerance, motion, memory, record)
+    restore_friction(friction, places.limits)
+    _move_to_zero(problem, row, motion, memory, places)
+    return status == REPEATS and keep_orbit(problem, row, friction, 2, motion, memory, record, places)
 
 
 @kernel
-def fill_needs(problem, row, friction, state, work, memory, record, places, needs):
+def fill_needs(problem, row, friction, state, motion, memory, record, places, needs):
     """Fill the static friction of each contact with which none ever slips; inf if one moves at the start, or
     where the normal load varies.
 
@@ -556,25 +545,25 @@ def fill_needs(problem, row, friction, state, work, memory, record, places, need
     problem, row : Problem, Row
     friction : Friction, replaced
     state : (2, m) modes and their velocities q' at tau = 0
-    work, memory, record, places : Work, Return, Record, Places after `keep_held`
+    motion, memory, record, places : Motion, Return, Record, Places after `keep_held`
     needs : (N,)
     """
     for j in range(places.rests.size):
         friction.kinetic[j] = friction.static[j] = WITHOUT_LIMIT
         needs[j] = math.inf
-    if not begins_held(problem, row, friction, state, work, memory):
+    if not begins_held(problem, row, friction, state, motion, memory):
         return
     clear_record(record)
-    from_rest(problem, row, friction, state, work, memory, record, FORCES)
-    difference = _compare(problem, row, work, memory, places)
+    from_rest(problem, row, friction, state, motion, memory, record, FORCES)
+    difference = _compare(problem, row, motion, memory, places)
     for j in range(places.rests.size):
         if not varies(problem, j):
-            most = max(places.forces[1, j], -places.forces[0, j]) + places.gains[j] * difference
-            needs[j] = max(most, max(record.forces[1, j], -record.forces[0, j]))
+            most = max(places.forces[HIGH, j], -places.forces[LOW, j]) + places.gains[j] * difference
+            needs[j] = max(most, max(record.forces[HIGH, j], -record.forces[LOW, j]))
 
 
 @kernel
-def place_after_start(problem, row, friction, state, cycles, work, memory, record, places, shift):
+def place_after_start(problem, row, friction, state, cycles, motion, memory, record, places, shift):
     """Fill the displacements of contacts and masses that all rest, at the places to which the start leads.
 
     Parameters
@@ -582,7 +571,7 @@ def place_after_start(problem, row, friction, state, cycles, work, memory, recor
     problem, row, friction : Problem, Row, Friction
     state : (2, m) modes and their velocities q' at tau = 0
     cycles : periods of the load to follow at most
-    work, memory, record, places : Work, Return, Record, Places after `keep_held`
+    motion, memory, record, places : Motion, Return, Record, Places after `keep_held`
     shift : (N + n,) filled with the displacements beside those at the place 0
 
     Returns
@@ -590,8 +579,8 @@ def place_after_start(problem, row, friction, state, cycles, work, memory, recor
     bool : whether the places are known
     """
     contacts, modes = problem.chi.shape
-    from_rest(problem, row, friction, state, work, memory, record, NOTHING)
-    known, _ = follow_to_rest(problem, row, friction, 2, cycles, 1.0, work, memory, record, places)
+    from_rest(problem, row, friction, state, motion, memory, record, NOTHING)
+    known, _ = follow_to_rest(problem, row, friction, 2, cycles, 1.0, motion, memory, record, places)
     if not known:
         return False
     _unload(problem, friction, places)

@@ -37,6 +37,12 @@ NEXT = np.arange(1.0, WIDTH + 1.0)
 #: Phase of the load at which states are compared: events gather at the extremes of the load, away from here.
 SECTION = 0.37
 
+#: Places in `Row.numbers`: length h of the intervals; r; displacement of the modes that the load can cause.
+H, R, SIZE = 0, 1, 2
+
+#: Rows of a state: the modes q, their velocities p, and the forces f of elastic contacts.
+Q, P, F = 0, 1, 2
+
 #: Intervals of a period whose load is kept, and patterns whose derivatives are.
 _KEPT_INTERVALS = 512
 _KEPT_PATTERNS = 64
@@ -89,7 +95,7 @@ class Row(NamedTuple):
     filled where a motion has it for the first time.
     """
 
-    numbers: np.ndarray  # (3,) length h of the intervals, r, size
+    numbers: np.ndarray  # (3,) see H
     intervals: np.ndarray  # (1,) int: K
     stiffness: np.ndarray  # (m,) h^2 w^2/r^2
     damping: np.ndarray  # (m, m) h C/r
@@ -100,7 +106,7 @@ class Row(NamedTuple):
     chi: np.ndarray  # (N, M)
     reaction: np.ndarray  # (N, M) h^2/r^2 chi: acceleration of the modes per unit force
     mobility: np.ndarray  # (N, N) chi reaction^T: acceleration in the contacts per unit force
-    yields: np.ndarray  # (N,) what a change of the force of a spring counts as; 0: rigid
+    yields: np.ndarray  # (N,) weight of changes of the force of a spring, see `_set_yields`; 0: rigid
     cosines: np.ndarray  # (H, WIDTH) series of cos(n h x)
     sines: np.ndarray  # (H, WIDTH) series of sin(n h x)
     phasors: np.ndarray  # (2, D, H)
@@ -112,7 +118,7 @@ class Row(NamedTuple):
     parts: Parts
 
 
-class Work(NamedTuple):
+class Motion(NamedTuple):
     """State of a motion, and the series of its present step.
 
     Rows of `series`, each a Taylor series in x: m displacements of modes; D channels; then for every contact
@@ -120,7 +126,7 @@ class Work(NamedTuple):
     the normal load.
     """
 
-    state: np.ndarray  # (3, ...): q, p, and the force of every elastic contact
+    state: np.ndarray  # (3, ...) see Q, P, F
     sense: np.ndarray  # (N,) int: 1, -1 sliding up, down; 0 held
     fresh: np.ndarray  # (N,) int: leading coefficients of the watched series that are zero by definition; of
     # a spring at its limit with the sign of that
@@ -130,7 +136,7 @@ class Work(NamedTuple):
     solve: np.ndarray  # (N + 1, N) factors of the mobility of held contacts; its last row is scratch
     held: np.ndarray  # (N + 1,) int: contacts held by a constraint; the last: how many
     scratch: np.ndarray  # (8, WIDTH)
-    clock: np.ndarray  # (1,) phase from which on the series of the channels are there; NaN for none
+    clock: np.ndarray  # (1,) phase at which the series of the channels begin; NaN: there are none
     tangent: np.ndarray  # (size, S) derivatives of the state by that at the section
     onward: np.ndarray  # (2, size, S) derivatives over a part of an interval; scratch
     forces: np.ndarray  # (N, S) the derivatives of the forces
@@ -206,13 +212,13 @@ def make_row(problem):
 
 
 @entry
-def make_work(problem):
+def make_motion(problem):
     """Allocate the memory of one motion."""
     contacts, modes = problem.chi.shape
     size = state_size(problem)
     width = padded(modes)
     rows = padded(size)
-    return Work(
+    return Motion(
         np.zeros((3, padded(max(modes, contacts)))), np.zeros(contacts, np.int64),
         np.zeros(contacts, np.int64), np.zeros(contacts, np.bool_),
         np.zeros((modes + problem.push.shape[1] + 4 * contacts + 1, WIDTH)),
@@ -225,7 +231,7 @@ def make_work(problem):
 @kernel
 def _set_waves(problem, row):
     """Fill the series of cos(n h x) and sin(n h x)."""
-    h = row.numbers[0]
+    h = row.numbers[H]
     for n in range(problem.orders.size):
         angle = problem.orders[n] * h
         term = 1.0
@@ -261,12 +267,12 @@ def _set_modes(problem, row, turn):
 
 @kernel
 def _set_yields(problem, row):
-    """Fill what a change of the force of a spring counts as beside changes of the modes.
+    """Fill the weights of changes of the forces of springs beside changes of the modes.
 
-    It is the displacement of a mode that moves the contact as far as the spring and the structure under this
-    force.
+    The weight is the displacement of a mode that moves the contact as far as the spring and the structure
+    under this force.
     """
-    square = row.numbers[1] * row.numbers[1]
+    square = row.numbers[R] * row.numbers[R]
     for j in range(problem.spring.size):
         flexibility, share = 0.0, 0.0
         for m in range(problem.squares.size):
@@ -279,7 +285,7 @@ def _set_yields(problem, row):
 
 @kernel
 def _fill_channels(problem, row, tau, series, first):
-    """Fill the series of the channels from the phase tau on, into `series` from row `first` on."""
+    """Fill the series of the channels, which begin at the phase tau, in `series` from its row `first`."""
     channels = problem.push.shape[1]
     for d in range(channels):
         for k in range(0, WIDTH, LANES):
@@ -303,7 +309,7 @@ def set_row(problem, i, row):
     """Fill the constants of r[i]."""
     row.intervals[0] = _intervals(problem, i)
     h = math.pi / row.intervals[0]
-    row.numbers[0], row.numbers[1], row.numbers[2] = h, problem.r[i], problem.sizes[i]
+    row.numbers[H], row.numbers[R], row.numbers[SIZE] = h, problem.r[i], problem.sizes[i]
     contacts, modes = problem.chi.shape
     _set_modes(problem, row, h / problem.r[i])
     for a in range(contacts):
@@ -329,22 +335,22 @@ def set_row(problem, i, row):
 
 
 @kernel
-def set_channels(problem, row, tau, interval, work):
-    """Put the series of the channels from the phase tau on into the first rows of `work.series` after modes.
+def set_channels(problem, row, tau, interval, motion):
+    """Put the series of the channels, which begin at the phase tau, after those of the modes in the motion.
 
     Parameters
     ----------
     problem, row : Problem, Row
     tau : phase of the load
     interval : of the row, if tau is its beginning; else -1
-    work : Work
+    motion : Motion
     """
-    if work.clock[0] == tau:
+    if motion.clock[0] == tau:
         return
-    work.clock[0] = tau
+    motion.clock[0] = tau
     modes, channels = problem.push.shape
     if interval < 0 or 2 * row.intervals[0] * channels > row.loads.shape[0]:
-        _fill_channels(problem, row, tau, work.series, modes)
+        _fill_channels(problem, row, tau, motion.series, modes)
         return
     for k in range(0, channels * WIDTH, LANES):
-        store(load(row.loads, interval * channels * WIDTH + k), work.series, modes * WIDTH + k)
+        store(load(row.loads, interval * channels * WIDTH + k), motion.series, modes * WIDTH + k)

@@ -26,11 +26,11 @@ from .neighbours import (
     make_motions,
 )
 from .orbits import MEASURED, REPEATS, newton
-from .problem import SECTION, set_channels, state_size
+from .problem import SECTION, H, P, set_channels, state_size
 from .record import EVENTS, NOTHING, Record, make_list
 from .return_map import base_halves, fill_newton, from_rest, go_round, motion_size, return_distance, take_step
 from .series import Friction
-from .steady import Tools, find, make_tools
+from .steady import Workspace, find, make_workspace
 
 #: Places of motions: the last one accepted and the next one; on both sides of an end, and the last trial
 #: there; on both sides of an end for mu = 1; on both sides of a part of a step.
@@ -87,7 +87,7 @@ class Search(NamedTuple):
 class Walk(NamedTuple):
     """The memory of a search at one r."""
 
-    tools: Tools
+    workspace: Workspace
     listing: Record
     friction: Friction
     motions: Motions
@@ -104,7 +104,7 @@ def make_walk(problem, rows):
     """Allocate the memory of a search with `rows` values of mu."""
     contacts = problem.spring.size
     return Walk(
-        make_tools(problem, np.empty((0, problem.squares.size)), 0), make_list(problem),
+        make_workspace(problem, np.empty((0, problem.squares.size)), 0), make_list(problem),
         Friction(np.empty(contacts), np.empty(contacts)), make_motions(problem, _PLACES), np.ones(1),
         np.empty((rows, contacts)), np.zeros(3), np.zeros(5), np.zeros(rows, np.int64),
         np.zeros(rows, np.int64),
@@ -149,18 +149,18 @@ def _set_friction(search, beta, walk):
 @kernel
 def _list_motion(problem, search, beta, walk, tolerance, a):
     """Follow the motion in memory once more and keep it as motion a; False if that is not possible."""
-    row, work, memory = walk.tools.row, walk.tools.work, walk.tools.memory
+    row, motion, memory = walk.workspace.row, walk.workspace.motion, walk.workspace.memory
     halves = base_halves(problem)
     for repeat in range(2):
         clear_events(walk.listing.events)
         walk.listing.active[0] = EVENTS
-        code = go_round(problem, row, walk.friction, halves, work, memory, walk.listing, False)
+        code = go_round(problem, row, walk.friction, halves, motion, memory, walk.listing, False)
         walk.listing.active[0] = NOTHING
         if code != FOLLOWED:
             return False
         if repeat > 0 or return_distance(problem, row, memory) <= max(MEASURED, tolerance):
             break
-        newton(problem, row, walk.friction, halves, MEASURED, work, memory, walk.tools.record)
+        newton(problem, row, walk.friction, halves, MEASURED, motion, memory, walk.workspace.record)
     close_lists(walk.listing.events)
     keep_neighbour(problem, search.kinetic, beta, memory, walk.listing.events, walk.motions, a)
     return True
@@ -171,16 +171,16 @@ def _set_senses(problem, walk):
     """Set the senses of sliding contacts in memory to those of their velocities: from one motion to the next
     a turn may pass the section.
     """
-    row, work, memory = walk.tools.row, walk.tools.work, walk.tools.memory
+    row, motion, memory = walk.workspace.row, walk.workspace.motion, walk.workspace.memory
     modes, channels = problem.push.shape
-    work.clock[0] = math.nan
-    set_channels(problem, row, SECTION, 0, work)
+    motion.clock[0] = math.nan
+    set_channels(problem, row, SECTION, 0, motion)
     for j in range(memory.senses.size):
-        w = -row.numbers[0] * problem.belt[j]
+        w = -row.numbers[H] * problem.belt[j]
         for m in range(modes):
-            w += problem.chi[j, m] * memory.start[1, m]
+            w += problem.chi[j, m] * memory.start[P, m]
         for d in range(channels):
-            w -= problem.base[j, d] * work.series[modes + d, 1]
+            w -= problem.base[j, d] * motion.series[modes + d, 1]
         if memory.senses[j] != 0 and w != 0.0:
             memory.senses[j] = 1 if w > 0.0 else -1
 
@@ -204,15 +204,15 @@ def _solve(problem, tolerance, walk):
     Where a turn is so near to the section that it passes it in a step of Newton's method, the step is taken
     all the same, and the sense follows.
     """
-    tools = walk.tools
-    row, work, memory = tools.row, tools.work, tools.memory
+    workspace = walk.workspace
+    row, motion, memory = workspace.row, workspace.motion, workspace.memory
     halves = base_halves(problem)
     for _ in range(_MOST_PASSED):
         _set_senses(problem, walk)
-        status, _ = newton(problem, row, walk.friction, halves, tolerance, work, memory, tools.record)
+        status, _ = newton(problem, row, walk.friction, halves, tolerance, motion, memory, workspace.record)
         if status == REPEATS or not _turned_at_section(memory):
             break
-        fill_newton(problem, row, halves, work, memory)
+        fill_newton(problem, row, halves, motion, memory)
         if not solve_linear(memory.matrix, memory.right, state_size(problem)):
             break
         take_step(problem, row, memory)
@@ -222,18 +222,18 @@ def _solve(problem, tolerance, walk):
 @kernel
 def _begin_motion(problem, i, search, beta, walk, a):
     """Put the motion at beta in memory that motion a points to; without one, the motion without friction."""
-    tools = walk.tools
+    workspace = walk.workspace
     if walk.motions.kind[a] == SLIDES or walk.motions.kind[a] == HAS_STOPS:
-        begin_from(walk.motions, a, beta, tools.memory)
+        begin_from(walk.motions, a, beta, workspace.memory)
     else:
         from_rest(
             problem,
-            tools.row,
+            workspace.row,
             walk.friction,
             search.starts[i],
-            tools.work,
-            tools.memory,
-            tools.record,
+            workspace.motion,
+            workspace.memory,
+            workspace.record,
             NOTHING,
         )
 
@@ -252,18 +252,18 @@ def _find(problem, i, search, beta, tolerance, walk, a):
     walk : Walk
     a : place of a motion
     """
-    tools, motions = walk.tools, walk.motions
+    workspace, motions = walk.workspace, walk.motions
     _begin_motion(problem, i, search, beta, walk, a)
     found = _solve(problem, tolerance, walk)
     if not found and motions.kind[a] != SLIDES:
         _begin_motion(problem, i, search, motions.beta[a], walk, a)
         followed = find(
-            problem, tools.row, walk.friction, search.cycles, search.tolerance, tools.work, tools.memory,
-            tools.ring, tools.record, tools.course,
+            problem, workspace.row, walk.friction, search.cycles, search.tolerance, workspace.motion,
+            workspace.memory, workspace.ring, workspace.record, workspace.course,
         )  # fmt: skip
         found = followed.status == REPEATS
-    # what is larger hardly differs from one period to the next, but is no steady state
-    return found and motion_size(problem, tools.row, tools.memory) <= search.tallest[i]
+    # a larger motion hardly differs from one period to the next, but is no steady state
+    return found and motion_size(problem, workspace.row, workspace.memory) <= search.tallest[i]
 
 
 @kernel
@@ -279,7 +279,7 @@ def keep_unknown(beta, walk, a, b):
 
 
 @kernel
-def reach(problem, i, search, beta, tolerance, walk, a, b):
+def find_motion(problem, i, search, beta, tolerance, walk, a, b):
     """Find the motion at beta from motion a, and keep it as motion b.
 
     A contact that creeps has long stops long before it has settled: such a motion is kept as it is.
@@ -299,7 +299,7 @@ def reach(problem, i, search, beta, tolerance, walk, a, b):
             return
     elif motions.kind[a] == HAS_STOPS and _list_motion(problem, search, beta, walk, math.inf, b):
         for j in range(motions.senses.shape[1]):
-            if walk.tools.memory.counts[STUCK, j] > _LONG * motions.window[0]:
+            if walk.workspace.memory.counts[STUCK, j] > _LONG * motions.window[0]:
                 motions.settled[b] = 0
                 return
     keep_unknown(beta, walk, a, b)
@@ -321,7 +321,7 @@ def _raise_own_friction(problem, i, search, beta, walk):
     while walk.share[0] < 1.0 and motions.kind[HERE] != NOT_FOUND and rise > _LEAST_RISE:
         share = walk.share[0]
         walk.share[0] = min(share + rise, 1.0)
-        reach(problem, i, search, beta, LOOSE, walk, HERE, NEXT)
+        find_motion(problem, i, search, beta, LOOSE, walk, HERE, NEXT)
         if motions.kind[NEXT] == NOT_FOUND:
             walk.share[0] = share
             rise *= 0.25
@@ -331,11 +331,11 @@ def _raise_own_friction(problem, i, search, beta, walk):
     if walk.share[0] < 1.0:
         walk.share[0] = 1.0
         motions.kind[HERE] = NOT_FOUND
-        reach(problem, i, search, beta, LOOSE, walk, HERE, HERE)
+        find_motion(problem, i, search, beta, LOOSE, walk, HERE, HERE)
 
 
 @kernel
-def reach_first(problem, i, search, walk):
+def find_first_motion(problem, i, search, walk):
     """Find the first motion, HERE: next to beta = 0, or next to the known end of the first interval."""
     motions = walk.motions
     beta = LOWEST * search.scale[i]
@@ -344,7 +344,7 @@ def reach_first(problem, i, search, walk):
     for _ in range(_BEGINNINGS):
         motions.kind[HERE] = GROWS if search.grows[i] else NOT_FOUND
         walk.share[0] = 0.0
-        reach(problem, i, search, beta, LOOSE, walk, HERE, HERE)
+        find_motion(problem, i, search, beta, LOOSE, walk, HERE, HERE)
         _raise_own_friction(problem, i, search, beta, walk)
         if motions.kind[HERE] != NOT_FOUND:
             break

@@ -8,12 +8,16 @@ from ..compiler import entry, kernel
 from ..compiler.vectors import LANES, filled, load, magnitude, store, total
 from .crossings import first_zero, next_turn, value_at
 from .events import MOST, Events, list_step, make_events
-from .problem import LONG, TERMS, WIDTH
+from .problem import LONG, SIZE, TERMS, WIDTH, H
 from .series import first_contact_row
 
 NOTHING, RANGES, STEPS, FORCES, EVENTS = 0, 1, 2, 3, 4
 
 _SLOPE, _VALUE = 5, 6  # rows of the scratch
+
+#: Rows of `ranges` and `forces`, and of `works`.
+LOW, HIGH = 0, 1
+OF_FRICTION, OF_WALL = 0, 1
 
 #: Rows of `slips`.
 LEAST_SLIP, _PRESENT, _EDGE = 0, 1, 2
@@ -74,13 +78,13 @@ def make_list(problem):
 def begin_cycle(record):
     """Begin a cycle of a longer record: a slip under way goes on."""
     for i in range(record.ranges.shape[1]):
-        record.ranges[0, i] = np.inf
-        record.ranges[1, i] = -np.inf
+        record.ranges[LOW, i] = np.inf
+        record.ranges[HIGH, i] = -np.inf
     for j in range(record.distance.size):
         record.distance[j] = 0.0
         record.slips[LEAST_SLIP, j] = np.inf
-        record.works[0, j] = 0.0
-        record.works[1, j] = 0.0
+        record.works[OF_FRICTION, j] = 0.0
+        record.works[OF_WALL, j] = 0.0
 
 
 @kernel
@@ -91,16 +95,16 @@ def clear_record(record):
         record.slips[_PRESENT, j] = 0.0
         record.slips[_EDGE, j] = np.inf
     for i in range(record.forces.shape[1]):
-        record.forces[0, i] = np.inf
-        record.forces[1, i] = -np.inf
+        record.forces[LOW, i] = np.inf
+        record.forces[HIGH, i] = -np.inf
     record.count[0] = 0
 
 
 @kernel
 def include(ends, i, value):
     """Widen range i of `ends` (2, ...) to include a value."""
-    ends[0, i] = min(ends[0, i], value)
-    ends[1, i] = max(ends[1, i], value)
+    ends[LOW, i] = min(ends[LOW, i], value)
+    ends[HIGH, i] = max(ends[HIGH, i], value)
 
 
 @kernel
@@ -119,7 +123,7 @@ def _is_within(series, at, ends, i):
     for k in range(0, WIDTH, LANES):
         varies = varies + magnitude(load(series, at * WIDTH + k))
     most = total(varies) - abs(series[at, 0])
-    return series[at, 0] + most <= ends[1, i] and series[at, 0] - most >= ends[0, i]
+    return series[at, 0] + most <= ends[HIGH, i] and series[at, 0] - most >= ends[LOW, i]
 
 
 @kernel
@@ -219,47 +223,47 @@ def join_slips(record, halves):
 
 
 @kernel
-def _keep_works(problem, row, work, end, record, first):
+def _keep_works(problem, row, motion, end, record, first):
     """Add the sliding distances and works of the present step."""
     contacts = problem.spring.size
-    series = work.series
+    series = motion.series
     for j in range(contacts):
-        belt = row.numbers[0] * problem.belt[j]
+        belt = row.numbers[H] * problem.belt[j]
         force = first + 2 * contacts + j
-        if work.sense[j] != 0:
+        if motion.sense[j] != 0:
             way = value_at(series, first + j, end) - series[first + j, 0] - belt * end
             record.distance[j] += abs(way)
             record.slips[_PRESENT, j] += abs(way)
             if varies(problem, j):
-                record.works[0, j] += _integral_of_product(series, force, first + contacts + j, end)
+                record.works[OF_FRICTION, j] += _integral_of_product(series, force, first + contacts + j, end)
             else:
-                record.works[0, j] += series[force, 0] * way
+                record.works[OF_FRICTION, j] += series[force, 0] * way
         elif problem.spring[j] != 0.0:
             _keep_slip(record, j)
         if belt != 0.0:
-            record.works[1, j] -= _integral(series, force, end) * belt
+            record.works[OF_WALL, j] -= _integral(series, force, end) * belt
 
 
 @kernel
-def _keep_step(work, end, record):
+def _keep_step(motion, end, record):
     """Keep the series of the present step."""
     k = record.count[0]
     if k < record.steps.shape[0]:
         for i in range(record.steps.shape[1]):
             for n in range(WIDTH):
-                record.steps[k, i, n] = work.series[i, n]
-        for j in range(work.sense.size):
-            record.patterns[k, j] = work.sense[j]
-        record.patterns[k, work.sense.size] = end
+                record.steps[k, i, n] = motion.series[i, n]
+        for j in range(motion.sense.size):
+            record.patterns[k, j] = motion.sense[j]
+        record.patterns[k, motion.sense.size] = end
     record.count[0] = k + 1
 
 
 @kernel
-def _keep_forces(problem, work, end, record):
+def _keep_forces(problem, motion, end, record):
     """Include the forces of the present step, less and plus the limits."""
     contacts = problem.spring.size
     first = first_contact_row(problem)
-    series, scratch = work.series, work.scratch
+    series, scratch = motion.series, motion.scratch
     for i in range(2 * contacts):
         j = i % contacts
         limit = record.limits[j] if i >= contacts else -record.limits[j]
@@ -273,36 +277,36 @@ def _keep_forces(problem, work, end, record):
 def mirror(record):
     """Widen the ranges by those of the half period that mirrors the one recorded."""
     for i in range(record.ranges.shape[1]):
-        include(record.ranges, i, -record.ranges[0, i])
-        include(record.ranges, i, -record.ranges[1, i])
+        include(record.ranges, i, -record.ranges[LOW, i])
+        include(record.ranges, i, -record.ranges[HIGH, i])
 
 
 @kernel
-def record_step(problem, row, work, end, record):
+def record_step(problem, row, motion, end, record):
     """Include the present step, up to `end` in x."""
     if record.active[0] == EVENTS:
-        list_step(problem, row, work, end, record.events)
+        list_step(problem, row, motion, end, record.events)
         return
     if record.active[0] == FORCES:
-        _keep_forces(problem, work, end, record)
+        _keep_forces(problem, motion, end, record)
         return
     if record.active[0] == STEPS:
-        _keep_step(work, end, record)
+        _keep_step(motion, end, record)
     modes = problem.push.shape[0]
     contacts = problem.spring.size
     first = first_contact_row(problem)
-    series, scratch = work.series, work.scratch
+    series, scratch = motion.series, motion.scratch
     for j in range(contacts):
         if problem.spring[j] == 0.0 and problem.belt[j] == 0.0:  # at rest, or on its way in one direction
             include(record.ranges, j, series[first + j, 0])
             include(record.ranges, j, value_at(series, first + j, end))
         else:
-            _keep_range(series, first + j, end, row.numbers[2], record.ranges, j, scratch)
-    _keep_works(problem, row, work, end, record, first)
+            _keep_range(series, first + j, end, row.numbers[SIZE], record.ranges, j, scratch)
+    _keep_works(problem, row, motion, end, record, first)
     for i in range(record.masses.shape[0]):
         for k in range(0, WIDTH, LANES):
             place = filled(0.0)
             for m in range(modes):
                 place = place + load(series, m * WIDTH + k) * record.masses[i, m]
             store(place, scratch, _VALUE * WIDTH + k)
-        _keep_range(scratch, _VALUE, end, row.numbers[2], record.ranges, contacts + i, scratch)
+        _keep_range(scratch, _VALUE, end, row.numbers[SIZE], record.ranges, contacts + i, scratch)

@@ -11,14 +11,13 @@ from .follow import (
     FIRST_SENSE,
     FOLLOWED,
     LAST_SENSE,
-    LAW_ROWS,
     MOVED,
     REVERSALS,
     follow,
     follow_to_section,
 )
-from .pattern import begin
-from .problem import padded, state_size
+from .pattern import BOX_ROWS, begin
+from .problem import SIZE, F, H, P, Q, padded, state_size
 from .record import NOTHING
 from .series import factor_held, solve_held
 from .tangent import identity
@@ -38,7 +37,7 @@ class Return(NamedTuple):
     end_senses: np.ndarray  # (N,)
     matrix: np.ndarray  # (size, size)
     right: np.ndarray  # (size,)
-    law: np.ndarray  # scratch of `follow`
+    box: np.ndarray  # scratch of `follow`
     counts: np.ndarray  # counters of the last way
 
 
@@ -50,7 +49,7 @@ def make_return(problem):
     shape = (3, padded(max(modes, contacts)))
     return Return(
         np.zeros(shape), np.zeros(contacts, np.int64), np.zeros(shape), np.zeros(contacts, np.int64),
-        np.zeros((size, size)), np.zeros(size), np.zeros((LAW_ROWS, contacts)),
+        np.zeros((size, size)), np.zeros(size), np.zeros((BOX_ROWS, contacts)),
         np.zeros((COUNT_ROWS, contacts)),
     )  # fmt: skip
 
@@ -84,25 +83,25 @@ def copy_motion(state, senses, into, into_senses):
 
 
 @kernel
-def put_state(state, senses, work):
+def put_state(state, senses, motion):
     """Set the state and the pattern of a motion."""
-    copy_motion(state, senses, work.state, work.sense)
+    copy_motion(state, senses, motion.state, motion.sense)
     for j in range(senses.size):
-        work.fresh[j] = 0
+        motion.fresh[j] = 0
 
 
 @kernel
-def take_state(work, state, senses, sign):
+def take_state(motion, state, senses, sign):
     """Copy the state and the pattern of a motion, with a sign."""
     for part in range(3):
         for i in range(state.shape[1]):
-            state[part, i] = sign * work.state[part, i]
+            state[part, i] = sign * motion.state[part, i]
     for j in range(senses.size):
-        senses[j] = work.sense[j] if sign > 0.0 else -work.sense[j]
+        senses[j] = motion.sense[j] if sign > 0.0 else -motion.sense[j]
 
 
 @kernel
-def go_round(problem, row, friction, halves, work, memory, record, derive):
+def go_round(problem, row, friction, halves, motion, memory, record, derive):
     """Follow the motion from `memory.start` over some half periods, to `memory.end`.
 
     After an odd number of them the signs are those of the mirrored motion.
@@ -111,35 +110,35 @@ def go_round(problem, row, friction, halves, work, memory, record, derive):
     ----------
     problem, row, friction : Problem, Row, Friction
     halves : number of half periods
-    work, memory, record : Work, Return, Record
+    motion, memory, record : Motion, Return, Record
     derive : whether the derivatives are carried on
 
     Returns
     -------
     int : code of `follow`
     """
-    put_state(memory.start, memory.senses, work)
+    put_state(memory.start, memory.senses, motion)
     for part in range(COUNT_ROWS):
-        for j in range(work.sense.size):
+        for j in range(motion.sense.size):
             memory.counts[part, j] = 0.0
-    for j in range(work.sense.size):
+    for j in range(motion.sense.size):
         memory.counts[LAST_SENSE, j] = memory.counts[FIRST_SENSE, j] = memory.senses[j]
     if derive:
-        identity(problem, work)
+        identity(problem, motion)
     code = FOLLOWED
     for half in range(halves):
         if code == FOLLOWED:
-            code = follow(problem, row, friction, half % 2, work, memory.law, memory.counts, record, derive)
+            code = follow(problem, row, friction, half % 2, motion, memory.box, memory.counts, record, derive)
     sign = -1.0 if halves % 2 == 1 else 1.0
-    for j in range(work.sense.size):  # the first slip follows the last one of the time before
+    for j in range(motion.sense.size):  # the first slip follows the last one of the time before
         if memory.counts[FIRST_SENSE, j] * (sign * memory.counts[LAST_SENSE, j]) < 0.0:
             memory.counts[REVERSALS, j] += 1.0
-    take_state(work, memory.end, memory.end_senses, sign)
+    take_state(motion, memory.end, memory.end_senses, sign)
     return code
 
 
 @kernel
-def _start(problem, row, friction, state, work, memory):
+def _start(problem, row, friction, state, motion, memory):
     """Set the initial state, and decide its pattern; see `from_rest`.
 
     Returns
@@ -147,26 +146,26 @@ def _start(problem, row, friction, state, work, memory):
     (determined, tau) : whether the contacts determine their forces; phase
     """
     for m in range(problem.push.shape[0]):
-        work.state[0, m] = state[0, m]
-        work.state[1, m] = row.numbers[0] * state[1, m]
+        motion.state[Q, m] = state[Q, m]
+        motion.state[P, m] = row.numbers[H] * state[P, m]
     for j in range(problem.spring.size):
-        work.state[2, j] = 0.0
+        motion.state[F, j] = 0.0
     tau = state[2, 0] if state.shape[0] == 3 else 0.0
-    return begin(problem, row, friction, tau, work, memory.law), tau
+    return begin(problem, row, friction, tau, motion, memory.box), tau
 
 
 @kernel
-def begins_held(problem, row, friction, state, work, memory):
+def begins_held(problem, row, friction, state, motion, memory):
     """Whether no contact moves at the start."""
-    determined, _ = _start(problem, row, friction, state, work, memory)
+    determined, _ = _start(problem, row, friction, state, motion, memory)
     moving = 0
-    for j in range(work.sense.size):
-        moving += abs(work.sense[j])
+    for j in range(motion.sense.size):
+        moving += abs(motion.sense[j])
     return determined and moving == 0
 
 
 @kernel
-def from_rest(problem, row, friction, state, work, memory, record, what):
+def from_rest(problem, row, friction, state, motion, memory, record, what):
     """Follow a motion from its start to the section.
 
     Parameters
@@ -174,15 +173,15 @@ def from_rest(problem, row, friction, state, work, memory, record, what):
     problem, row, friction : Problem, Row, Friction
     state : (2, m) modes and their velocities q' at tau = 0, or (3, m), at the phase state[2, 0]; elastic
         contacts begin without force
-    work, memory, record : Work, Return, Record
+    motion, memory, record : Motion, Return, Record
     what : NOTHING or FORCES, what is recorded
     """
     record.active[0] = what
-    determined, tau = _start(problem, row, friction, state, work, memory)
+    determined, tau = _start(problem, row, friction, state, motion, memory)
     if determined:
-        follow_to_section(problem, row, friction, tau, work, memory.law, memory.counts, record)
+        follow_to_section(problem, row, friction, tau, motion, memory.box, memory.counts, record)
     record.active[0] = NOTHING
-    take_state(work, memory.start, memory.senses, 1.0)
+    take_state(motion, memory.start, memory.senses, 1.0)
 
 
 @kernel
@@ -214,8 +213,8 @@ def round_state(problem, friction, memory, bits):
             memory.start[part, i] = rounded(memory.start[part, i], step)
     for j in range(memory.senses.size):
         if memory.senses[j] == 0:
-            force = rounded(memory.start[2, j], raster(problem.spring[j] * size, bits))
-            memory.start[2, j] = min(max(force, -friction.kinetic[j]), friction.kinetic[j])
+            force = rounded(memory.start[F, j], raster(problem.spring[j] * size, bits))
+            memory.start[F, j] = min(max(force, -friction.kinetic[j]), friction.kinetic[j])
 
 
 @kernel
@@ -227,7 +226,7 @@ def take_end(memory):
 @kernel
 def motion_size(problem, row, memory):
     """Size of the states, the unit of `return_distance`."""
-    size = row.numbers[2]
+    size = row.numbers[SIZE]
     for m in range(problem.push.shape[0]):
         for part in range(2):
             size = max(size, abs(memory.start[part, m]), abs(memory.end[part, m]))
@@ -243,7 +242,7 @@ def largest_difference(row, senses, state, other):
             off = max(off, abs(state[part, i] - other[part, i]))
     for j in range(senses.size):
         if senses[j] == 0:  # else its force is given
-            off = max(off, row.yields[j] * abs(state[2, j] - other[2, j]))
+            off = max(off, row.yields[j] * abs(state[F, j] - other[F, j]))
     return off
 
 
@@ -258,25 +257,25 @@ def return_distance(problem, row, memory):
 
 
 @kernel
-def _place_column(problem, row, work, b):
-    """Fill work.watched with what a displacement of mode b moves in the contacts listed by `factor_held`.
+def _place_column(problem, row, motion, b):
+    """Fill motion.watched with what a displacement of mode b moves in the contacts listed by `factor_held`.
 
     It is the motion with the least kinetic energy that displaces these contacts as much: its Gram matrix is
     their mobility.
     """
     modes, contacts = problem.push.shape[0], problem.spring.size
-    right = work.solve[contacts]
-    for a in range(work.held[contacts]):
-        right[a] = problem.chi[work.held[a], b]
-    solve_held(work, right)
+    right = motion.solve[contacts]
+    for a in range(motion.held[contacts]):
+        right[a] = problem.chi[motion.held[a], b]
+    solve_held(motion, right)
     for m in range(modes):
-        work.watched[m] = 0.0
-        for a in range(work.held[contacts]):
-            work.watched[m] += row.reaction[work.held[a], m] * right[a]
+        motion.watched[m] = 0.0
+        for a in range(motion.held[contacts]):
+            motion.watched[m] += row.reaction[motion.held[a], m] * right[a]
 
 
 @kernel
-def keep_places(problem, row, work, memory, matrix, weight):
+def keep_places(problem, row, motion, memory, matrix, weight):
     """Add weight U L, with L U = 1: L are the places that the return map keeps, of contacts that rest.
 
     They are z of rigid contacts, and z - f/k of springs.  L J = L and L U = 1 leave every other multiplier of
@@ -286,35 +285,35 @@ def keep_places(problem, row, work, memory, matrix, weight):
     Parameters
     ----------
     problem, row : Problem, Row
-    work : Work; its pattern and the factors of its held contacts are replaced
+    motion : Motion; its pattern and the factors of its held contacts are replaced
     memory : Return
     matrix : (size, size)
     weight : 1.0 or -1.0
     """
     modes, contacts = problem.push.shape[0], problem.spring.size
     for j in range(contacts):
-        work.sense[j] = 1 if memory.counts[MOVED, j] != 0.0 else 0
-    factor_held(problem, row, work)  # as when all of them were held
+        motion.sense[j] = 1 if memory.counts[MOVED, j] != 0.0 else 0
+    factor_held(problem, row, motion)  # as when all of them were held
     for b in range(modes):
-        _place_column(problem, row, work, b)
+        _place_column(problem, row, motion, b)
         for m in range(modes):
-            matrix[m, b] += weight * work.watched[m]
+            matrix[m, b] += weight * motion.watched[m]
         for j in range(contacts):
-            if problem.spring[j] != 0.0 and work.sense[j] == 0:
+            if problem.spring[j] != 0.0 and motion.sense[j] == 0:
                 left = problem.chi[j, b]
                 for m in range(modes):
-                    left -= problem.chi[j, m] * work.watched[m]
+                    left -= problem.chi[j, m] * motion.watched[m]
                 matrix[2 * modes + j, b] -= weight * problem.spring[j] * left
     for j in range(contacts):
-        if problem.spring[j] != 0.0 and work.sense[j] == 0:
+        if problem.spring[j] != 0.0 and motion.sense[j] == 0:
             matrix[2 * modes + j, 2 * modes + j] += weight
 
 
 @kernel
-def fill_newton(problem, row, halves, work, memory):
-    """Fill the linear equations of a Newton step; the derivatives are in `work.tangent`.
+def fill_newton(problem, row, halves, motion, memory):
+    """Fill the linear equations of a Newton step; the derivatives are in `motion.tangent`.
 
-    The pattern in `work` is replaced.
+    The pattern in `motion` is replaced.
     """
     modes = problem.push.shape[0]
     contacts = memory.senses.size
@@ -322,7 +321,7 @@ def fill_newton(problem, row, halves, work, memory):
     sign = -1.0 if halves % 2 == 1 else 1.0
     for a in range(size):
         for b in range(size):
-            memory.matrix[a, b] = -sign * work.tangent[a, b]
+            memory.matrix[a, b] = -sign * motion.tangent[a, b]
         memory.matrix[a, a] += 1.0
     for j in range(contacts):
         if size > 2 * modes and problem.spring[j] == 0.0:  # a rigid contact's force is no coordinate
@@ -331,12 +330,12 @@ def fill_newton(problem, row, halves, work, memory):
                 memory.matrix[a, 2 * modes + j] = 0.0
             memory.matrix[2 * modes + j, 2 * modes + j] = 1.0
     if halves % 2 == 0:
-        keep_places(problem, row, work, memory, memory.matrix, 1.0)
+        keep_places(problem, row, motion, memory, memory.matrix, 1.0)
     for m in range(modes):
-        memory.right[m] = memory.end[0, m] - memory.start[0, m]
-        memory.right[modes + m] = memory.end[1, m] - memory.start[1, m]
+        memory.right[m] = memory.end[Q, m] - memory.start[Q, m]
+        memory.right[modes + m] = memory.end[P, m] - memory.start[P, m]
     for j in range(size - 2 * modes):
-        memory.right[2 * modes + j] = memory.end[2, j] - memory.start[2, j]
+        memory.right[2 * modes + j] = memory.end[F, j] - memory.start[F, j]
 
 
 @kernel
@@ -346,12 +345,12 @@ def take_step(problem, row, memory):
     size = motion_size(problem, row, memory)
     step = 0.0
     for m in range(modes):
-        memory.start[0, m] += memory.right[m]
-        memory.start[1, m] += memory.right[modes + m]
+        memory.start[Q, m] += memory.right[m]
+        memory.start[P, m] += memory.right[modes + m]
         step = max(step, abs(memory.right[m]), abs(memory.right[modes + m]))
     for j in range(memory.senses.size):
         if problem.spring[j] != 0.0:
-            memory.start[2, j] += memory.right[2 * modes + j]
+            memory.start[F, j] += memory.right[2 * modes + j]
             if memory.senses[j] == 0:
                 step = max(step, row.yields[j] * abs(memory.right[2 * modes + j]))
     return step / size

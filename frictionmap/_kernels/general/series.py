@@ -12,7 +12,7 @@ import numpy as np
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store, total
 from .crossings import value_at
-from .problem import INVERSE, LONG, NEXT, TERMS, WIDTH, set_channels
+from .problem import INVERSE, LONG, NEXT, TERMS, WIDTH, F, H, set_channels
 
 
 class Friction(NamedTuple):
@@ -29,42 +29,42 @@ def first_contact_row(problem):
 
 
 @kernel
-def factor_held(problem, row, work):
+def factor_held(problem, row, motion):
     """List the rigid contacts that are held, and factor their mobility (Cholesky); False if singular."""
-    contacts = work.sense.size
+    contacts = motion.sense.size
     count = 0
     for j in range(contacts):
-        if work.sense[j] == 0 and problem.spring[j] == 0.0:
-            work.held[count] = j
+        if motion.sense[j] == 0 and problem.spring[j] == 0.0:
+            motion.held[count] = j
             count += 1
-    work.held[contacts] = count
+    motion.held[contacts] = count
     for a in range(count):
         for b in range(a + 1):
-            rest = row.mobility[work.held[a], work.held[b]]
+            rest = row.mobility[motion.held[a], motion.held[b]]
             for c in range(b):
-                rest -= work.solve[a, c] * work.solve[b, c]
+                rest -= motion.solve[a, c] * motion.solve[b, c]
             if a > b:
-                work.solve[a, b] = rest / work.solve[b, b]
+                motion.solve[a, b] = rest / motion.solve[b, b]
             elif rest > 0.0:
-                work.solve[a, a] = np.sqrt(rest)
+                motion.solve[a, a] = np.sqrt(rest)
             else:
                 return False
     return True
 
 
 @inner_kernel
-def solve_held(work, right):
+def solve_held(motion, right):
     """Solve for the forces that hold contacts; `right` holds their accelerations and then the forces."""
-    contacts = work.sense.size
-    count = work.held[contacts]
+    contacts = motion.sense.size
+    count = motion.held[contacts]
     for a in range(count):
         for c in range(a):
-            right[a] -= work.solve[a, c] * right[c]
-        right[a] /= work.solve[a, a]
+            right[a] -= motion.solve[a, c] * right[c]
+        right[a] /= motion.solve[a, a]
     for a in range(count - 1, -1, -1):
         for c in range(a + 1, count):
-            right[a] -= work.solve[c, a] * right[c]
-        right[a] /= work.solve[a, a]
+            right[a] -= motion.solve[c, a] * right[c]
+        right[a] /= motion.solve[a, a]
 
 
 @inner_kernel
@@ -85,21 +85,21 @@ def _normal_loads(problem, series, first):
 
 
 @inner_kernel
-def _known_forces(problem, friction, work, first):
+def _known_forces(problem, friction, motion, first):
     """Fill the forces of sliding contacts; those of held ones begin at 0, of elastic ones at their force."""
     contacts = problem.spring.size
-    series = work.series
+    series = motion.series
     for j in range(contacts):
         force, nu = (first + 2 * contacts + j) * WIDTH, (first + 3 * contacts + j) * WIDTH
-        size = work.sense[j] * friction.kinetic[j]
+        size = motion.sense[j] * friction.kinetic[j]
         for k in range(0, WIDTH, LANES):
             store(load(series, nu + k) * size, series, force + k)
-        if work.sense[j] == 0 and problem.spring[j] != 0.0:
-            series[first + 2 * contacts + j, 0] = work.state[2, j]
+        if motion.sense[j] == 0 and problem.spring[j] != 0.0:
+            series[first + 2 * contacts + j, 0] = motion.state[F, j]
 
 
 @inner_kernel
-def _elastic_forces(problem, row, k, work, first):
+def _elastic_forces(problem, row, k, motion, first):
     """Fill term k > 0 of the forces of elastic contacts that are held, from that of the modes.
 
     Those of springs between ends at rest are constant: their terms stay zero.
@@ -108,43 +108,43 @@ def _elastic_forces(problem, row, k, work, first):
     contacts = problem.spring.size
     width = row.chi.shape[1]
     for j in range(contacts):
-        if work.sense[j] == 0 and problem.spring[j] != 0.0 and not work.idle[j]:
+        if motion.sense[j] == 0 and problem.spring[j] != 0.0 and not motion.idle[j]:
             z = 0.0
             for m in range(0, width, LANES):
-                z += total(load(row.chi, j * width + m) * load(work.moves, k * width + m))
+                z += total(load(row.chi, j * width + m) * load(motion.moves, k * width + m))
             for d in range(channels):
-                z -= problem.base[j, d] * work.series[modes + d, k]
+                z -= problem.base[j, d] * motion.series[modes + d, k]
             if k == 1:
-                z -= row.numbers[0] * problem.belt[j]
-            work.series[first + 2 * contacts + j, k] = problem.spring[j] * z
+                z -= row.numbers[H] * problem.belt[j]
+            motion.series[first + 2 * contacts + j, k] = problem.spring[j] * z
 
 
 @inner_kernel
-def _free_terms(problem, row, work, first):
+def _free_terms(problem, row, motion, first):
     """Fill all terms of the modes where no contact is held and C does not couple modes: mode by mode."""
     modes, channels = problem.push.shape
     contacts = problem.spring.size
     width = row.chi.shape[1]
     for m in range(0, width, LANES):
-        before = load(work.moves, m)
-        here = load(work.moves, width + m)
+        before = load(motion.moves, m)
+        here = load(motion.moves, width + m)
         for k in range(TERMS):
             drive = filled(0.0)
             for d in range(channels):
-                drive = drive + load(row.push, d * width + m) * (INVERSE[k] * work.series[modes + d, k])
+                drive = drive + load(row.push, d * width + m) * (INVERSE[k] * motion.series[modes + d, k])
             for j in range(contacts):
-                force = work.series[first + 2 * contacts + j, k]
+                force = motion.series[first + 2 * contacts + j, k]
                 if force != 0.0:
                     drive = drive - load(row.reaction, j * width + m) * (INVERSE[k] * force)
             at = k * width + m
             drive = drive + load(row.place_term, at) * before
             before = here
             here = drive + load(row.velocity_term, at) * here
-            store(here, work.moves, at + 2 * width)
+            store(here, motion.moves, at + 2 * width)
 
 
 @inner_kernel
-def _free_term(problem, row, k, work, first):
+def _free_term(problem, row, k, motion, first):
     """Fill term k + 2 of the modes under all known forces."""
     modes, channels = problem.push.shape
     contacts = problem.spring.size
@@ -153,61 +153,61 @@ def _free_term(problem, row, k, work, first):
         at = k * width + m
         drive = filled(0.0)
         for d in range(channels):
-            drive = drive + load(row.push, d * width + m) * (INVERSE[k] * work.series[modes + d, k])
+            drive = drive + load(row.push, d * width + m) * (INVERSE[k] * motion.series[modes + d, k])
         for j in range(contacts):
-            force = work.series[first + 2 * contacts + j, k]
+            force = motion.series[first + 2 * contacts + j, k]
             if force != 0.0:
                 drive = drive - load(row.reaction, j * width + m) * (INVERSE[k] * force)
         if problem.coupled:
             for other in range(modes):
-                rate = (k + 1.0) * INVERSE[k] * work.moves[k + 1, other]
+                rate = (k + 1.0) * INVERSE[k] * motion.moves[k + 1, other]
                 drive = drive - load(row.coupling, other * width + m) * rate
-        drive = drive + load(row.place_term, at) * load(work.moves, at)
-        drive = drive + load(row.velocity_term, at) * load(work.moves, at + width)
-        store(drive, work.moves, at + 2 * width)
+        drive = drive + load(row.place_term, at) * load(motion.moves, at)
+        drive = drive + load(row.velocity_term, at) * load(motion.moves, at + width)
+        store(drive, motion.moves, at + 2 * width)
 
 
 @inner_kernel
-def _hold_term(problem, row, k, work, first):
+def _hold_term(problem, row, k, motion, first):
     """Fill term k of the forces that hold contacts, and take them from term k + 2 of the modes."""
     modes, channels = problem.push.shape
     contacts = problem.spring.size
     width = row.chi.shape[1]
-    count = work.held[contacts]
-    series, right = work.series, work.solve[contacts]
+    count = motion.held[contacts]
+    series, right = motion.series, motion.solve[contacts]
     for a in range(count):
-        j = work.held[a]
+        j = motion.held[a]
         moves = 0.0
         for m in range(0, width, LANES):
-            moves += total(load(row.chi, j * width + m) * load(work.moves, (k + 2) * width + m))
+            moves += total(load(row.chi, j * width + m) * load(motion.moves, (k + 2) * width + m))
         for d in range(channels):
             if problem.base[j, d] != 0.0:
                 moves -= problem.base[j, d] * series[modes + d, k + 2]
         right[a] = moves
-    solve_held(work, right)
+    solve_held(motion, right)
     scale = (k + 1.0) * (k + 2.0)
     for a in range(count):
-        j = work.held[a]
+        j = motion.held[a]
         series[first + 2 * contacts + j, k] = scale * right[a]
         for m in range(0, width, LANES):
             at = (k + 2) * width + m
-            store(load(work.moves, at) - load(row.reaction, j * width + m) * right[a], work.moves, at)
+            store(load(motion.moves, at) - load(row.reaction, j * width + m) * right[a], motion.moves, at)
 
 
 @inner_kernel
-def _contact_motion(problem, row, work, first, whole):
+def _contact_motion(problem, row, motion, first, whole):
     """Fill the displacements in the contacts, and the velocities relative to their walls.
 
     whole : for all contacts; else for those that slide
     """
     modes, channels = problem.push.shape
     contacts = problem.spring.size
-    series = work.series
+    series = motion.series
     for k in range(LONG):
         for m in range(modes):
-            series[m, k] = work.moves[k, m]
+            series[m, k] = motion.moves[k, m]
     for j in range(contacts):
-        if work.sense[j] == 0 and not whole:
+        if motion.sense[j] == 0 and not whole:
             continue
         z, w = (first + j) * WIDTH, (first + contacts + j) * WIDTH
         for k in range(0, WIDTH, LANES):
@@ -220,52 +220,52 @@ def _contact_motion(problem, row, work, first, whole):
             store(place, series, z + k)
         for k in range(0, WIDTH - LANES, LANES):
             store(load(series, z + k + 1) * load(NEXT, k), series, w + k)
-        series[first + contacts + j, 0] -= row.numbers[0] * problem.belt[j]
+        series[first + contacts + j, 0] -= row.numbers[H] * problem.belt[j]
 
 
 @inner_kernel
-def _all_slide(work):
+def _all_slide(motion):
     """Whether no contact is held."""
     held = 0
-    for j in range(work.sense.size):
-        held += work.sense[j] == 0
+    for j in range(motion.sense.size):
+        held += motion.sense[j] == 0
     return held == 0
 
 
 @kernel
-def expand(problem, row, friction, tau, interval, work, whole):
-    """Fill the series of the step that begins at the phase tau with the state and pattern in `work`.
+def expand(problem, row, friction, tau, interval, motion, whole):
+    """Fill the series of the step that begins at the phase tau with the state and pattern in `motion`.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
     tau, interval : see `set_channels`
-    work : Work
+    motion : Motion
     whole : whether the motion in contacts that are held is wanted, too
     """
     contacts = problem.spring.size
     width = row.chi.shape[1]
     first = first_contact_row(problem)
-    set_channels(problem, row, tau, interval, work)
-    _normal_loads(problem, work.series, first)
-    _known_forces(problem, friction, work, first)
+    set_channels(problem, row, tau, interval, motion)
+    _normal_loads(problem, motion.series, first)
+    _known_forces(problem, friction, motion, first)
     for m in range(0, width, LANES):
-        store(load(work.state, m), work.moves, m)
-        store(load(work.state, work.state.shape[1] + m), work.moves, width + m)
-    if _all_slide(work) and not problem.coupled:
-        _free_terms(problem, row, work, first)
+        store(load(motion.state, m), motion.moves, m)
+        store(load(motion.state, motion.state.shape[1] + m), motion.moves, width + m)
+    if _all_slide(motion) and not problem.coupled:
+        _free_terms(problem, row, motion, first)
     else:
         for k in range(TERMS):
             if k > 0:
-                _elastic_forces(problem, row, k, work, first)
-            _free_term(problem, row, k, work, first)
-            if work.held[contacts] > 0:
-                _hold_term(problem, row, k, work, first)
-    _contact_motion(problem, row, work, first, whole)
+                _elastic_forces(problem, row, k, motion, first)
+            _free_term(problem, row, k, motion, first)
+            if motion.held[contacts] > 0:
+                _hold_term(problem, row, k, motion, first)
+    _contact_motion(problem, row, motion, first, whole)
 
 
 @kernel
-def advance(problem, row, x, work):
+def advance(problem, row, x, motion):
     """Move the state on by x <= 1 of the present step."""
     first = first_contact_row(problem)
     contacts = problem.spring.size
@@ -279,11 +279,11 @@ def advance(problem, row, x, work):
         for k in range(LONG - 2, -1, -2):
             even_slope = even_slope * y + even
             odd_slope = odd_slope * y + odd
-            even = even * y + load(work.moves, k * width + m)
-            odd = odd * y + load(work.moves, (k + 1) * width + m)
+            even = even * y + load(motion.moves, k * width + m)
+            odd = odd * y + load(motion.moves, (k + 1) * width + m)
         velocity = odd + (even_slope * x + odd_slope * y) * 2.0
-        store(even + odd * x, work.state, m)
-        store(velocity, work.state, work.state.shape[1] + m)
+        store(even + odd * x, motion.state, m)
+        store(velocity, motion.state, motion.state.shape[1] + m)
     for j in range(contacts):
-        if problem.spring[j] != 0.0 and work.sense[j] == 0:
-            work.state[2, j] = value_at(work.series, first + 2 * contacts + j, x)
+        if problem.spring[j] != 0.0 and motion.sense[j] == 0:
+            motion.state[F, j] = value_at(motion.series, first + 2 * contacts + j, x)

@@ -13,16 +13,29 @@ from ..compiler.vectors import LANES, LEADING, filled, least, load, mask_above, 
 from .crossings import NONE, approach, slope_at, value_at
 from .follow import COUNT_ROWS, MOVED, NEAREST_STOP, STOPS, STUCK, TURNS
 from .orbits import LARGEST, MEASURED, radius_of_two
-from .problem import TERMS, WIDTH
-from .record import LEAST_SLIP, clear_record, include, mirror
+from .problem import SIZE, TERMS, WIDTH, H, P, Q
+from .record import LEAST_SLIP, OF_FRICTION, clear_record, include, mirror
 from .return_map import base_halves
 from .single_tables import (
+    CHI,
+    DELTA,
+    ETA,
+    KAPPA,
     PLACE,
     PLACE_RATE,
     PUSH,
     PUSH_RATE,
+    RATE,
+    RATE_BY_RATE,
+    RATE_BY_Z,
+    STIFFNESS,
+    WALL,
+    WALL_RATE,
     YIELD,
     YIELD_RATE,
+    Z_BY_RATE,
+    Z_BY_Z,
+    Z,
     control_row,
     end_row,
     force_row,
@@ -53,16 +66,16 @@ def _motions(single, x):
 @kernel
 def _to_beginning(single, interval, x, force):
     """Replace the state of rest at x by the one from which the slide would come at the beginning."""
-    kappa, delta, eta = single.numbers[0], single.numbers[1], single.numbers[2]
+    kappa, delta, eta = single.numbers[KAPPA], single.numbers[DELTA], single.numbers[ETA]
     state, at = single.state, force_row(interval)
     place, push, yield_ = _motions(single, x)
     rate = place - delta * push  # of `push`; that of `place` is -kappa push
     whole = place * rate + kappa * push * push
-    z = state[0] - value_at(single.series, at + 1, x) + force * yield_
-    p = state[1] - value_at(single.series, at + 2, x) + force * eta * push
-    state[0], state[1] = (rate * z - push * p) / whole, (kappa * push * z + place * p) / whole
-    for i in (2, 3):
-        z, p = state[i], state[i + 2]
+    z = state[Z] - value_at(single.series, at + 1, x) + force * yield_
+    p = state[RATE] - value_at(single.series, at + 2, x) + force * eta * push
+    state[Z], state[RATE] = (rate * z - push * p) / whole, (kappa * push * z + place * p) / whole
+    for i in (Z_BY_Z, Z_BY_RATE):
+        z, p = state[i], state[i + 2]  # those of the rate follow two places later
         state[i], state[i + 2] = (rate * z - push * p) / whole, (kappa * push * z + place * p) / whole
 
 
@@ -77,15 +90,15 @@ def _carry(single, motions, forced, force):
     forced : displacement and velocity under the holding force
     force : friction force
     """
-    kappa, delta, eta = single.numbers[0], single.numbers[1], single.numbers[2]
+    kappa, delta, eta = single.numbers[KAPPA], single.numbers[DELTA], single.numbers[ETA]
     place, push, yield_ = motions
     rate = place - delta * push
     state = single.state
-    z, p = state[0], state[1]
-    state[0] = z * place + p * push + forced[0] - force * yield_
-    state[1] = p * rate - kappa * z * push + forced[1] - force * eta * push
-    for i in (2, 3):
-        z, p = state[i], state[i + 2]
+    z, p = state[Z], state[RATE]
+    state[Z] = z * place + p * push + forced[0] - force * yield_
+    state[RATE] = p * rate - kappa * z * push + forced[1] - force * eta * push
+    for i in (Z_BY_Z, Z_BY_RATE):
+        z, p = state[i], state[i + 2]  # those of the rate follow two places later
         state[i], state[i + 2] = z * place + p * push, p * rate - kappa * z * push
 
 
@@ -108,7 +121,7 @@ def _through(single, interval, force):
 def _velocity_series(single, interval, sense, force):
     """Put the velocity of a slide, times its sense, in the scratch."""
     series, at = single.series, force_row(interval)
-    z, p = single.state[0], single.state[1]
+    z, p = single.state[Z], single.state[RATE]
     for k in range(0, WIDTH, LANES):
         sum_ = load(series, (at + 2) * WIDTH + k) - load(series, YIELD_RATE * WIDTH + k) * force
         sum_ = sum_ + load(series, PLACE_RATE * WIDTH + k) * z + load(series, PUSH_RATE * WIDTH + k) * p
@@ -148,7 +161,7 @@ def _slides_past(single, interval, sense, force):
     sense, force : of the slide
     """
     controls, bounds = single.controls, single.bounds
-    z, p, at = single.state[0], single.state[1], control_row(interval) + 1
+    z, p, at = single.state[Z], single.state[RATE], control_row(interval) + 1
     low = filled(math.inf)
     for part in range(0, WIDTH, LANES):
         sum_ = load(controls, at * WIDTH + part) - load(controls, YIELD // 2 * WIDTH + part) * force
@@ -177,7 +190,7 @@ def _held_past(single, interval, limit, sign):
 def _nothing_happens(single, interval, sense, beta):
     """Whether an interval is certain to hold no event of a motion; a slide is carried through it."""
     if sense == 0:
-        need = single.numbers[3] * single.state[0]
+        need = single.numbers[STIFFNESS] * single.state[Z]
         return (
             _held_past(single, interval, beta + need, 1) == _ALL
             and _held_past(single, interval, beta - need, -1) == _ALL
@@ -210,7 +223,7 @@ def _slide_ends(single, interval, sense, force, x, ready):
 @kernel
 def _stop_ends(single, interval, beta, x):
     """(x, sense) of the release of a contact that is held from x on; x = NONE if it stays held."""
-    need = single.numbers[3] * single.state[0]  # the force F - need holds the contact
+    need = single.numbers[STIFFNESS] * single.state[Z]  # the force F - need holds the contact
     found, side = NONE, 0
     for sign in (1, -1):
         limit = beta + sign * need
@@ -234,15 +247,15 @@ def _turn_or_stop(single, interval, sense, beta, x, memory):
     After a turn the derivatives of the velocity grow by the ratio of the accelerations after and before it.
     """
     state = single.state
-    held = value_at(single.series, force_row(interval), x) - single.numbers[3] * state[0]
-    state[1] = 0.0
+    held = value_at(single.series, force_row(interval), x) - single.numbers[STIFFNESS] * state[Z]
+    state[RATE] = 0.0
     if sense * held >= -beta:
-        state[4] = state[5] = 0.0
+        state[RATE_BY_Z] = state[RATE_BY_RATE] = 0.0
         memory.counts[STOPS, 0] += 1.0
         return 0
     ratio = (held + sense * beta) / (held - sense * beta)
-    state[4] *= ratio
-    state[5] *= ratio
+    state[RATE_BY_Z] *= ratio
+    state[RATE_BY_RATE] *= ratio
     memory.counts[TURNS, 0] += 1.0
     memory.counts[NEAREST_STOP, 0] = max(memory.counts[NEAREST_STOP, 0], beta / abs(held))
     return -sense
@@ -259,11 +272,11 @@ def _begin_slide(single, interval, sense, beta, x, fresh):
     x, fresh : see `_certain_from`
     """
     force = sense * beta
-    at, eta = force_row(interval), single.numbers[2]
+    at, eta = force_row(interval), single.numbers[ETA]
     if fresh == 2:
         push = sense * eta * slope_at(single.series, at, x)
     else:
-        held = value_at(single.series, at, x) - single.numbers[3] * single.state[0]
+        held = value_at(single.series, at, x) - single.numbers[STIFFNESS] * single.state[Z]
         push = sense * eta * (held - force)
     _to_beginning(single, interval, x, force)
     _velocity_series(single, interval, sense, force)
@@ -294,7 +307,7 @@ def _pass_interval(single, h, interval, sense, beta, begun, memory, record):
             memory.counts[STUCK, 0] += (min(end, 1.0) - x) * h
             if end == NONE:
                 return 0, begun, True
-            sense, x, begun = side, end, single.state[0]
+            sense, x, begun = side, end, single.state[Z]
             fresh = 2
         else:
             end = _slide_ends(single, interval, sense, sense * beta, start, ready)
@@ -302,7 +315,7 @@ def _pass_interval(single, h, interval, sense, beta, begun, memory, record):
                 _through(single, interval, sense * beta)
                 return sense, begun, True
             _to_end(single, interval, end, sense * beta)
-            z = single.state[0]
+            z = single.state[Z]
             record.distance[0] += abs(z - begun)
             include(record.ranges, 0, z)
             sense, x, begun = _turn_or_stop(single, interval, sense, beta, end, memory), end, z
@@ -333,14 +346,15 @@ def _return(single, h, intervals, start, sense, beta, memory, record):
     (sense, decided) : on return; whether nothing was unusual
     """
     state = single.state
-    state[0], state[1] = start
-    state[2], state[3], state[4], state[5] = 1.0, 0.0, 0.0, 1.0 if sense != 0 else 0.0
+    state[Z], state[RATE] = start
+    state[Z_BY_Z], state[Z_BY_RATE], state[RATE_BY_Z] = 1.0, 0.0, 0.0
+    state[RATE_BY_RATE] = 1.0 if sense != 0 else 0.0
     for part in range(COUNT_ROWS):
         memory.counts[part, 0] = 0.0
     memory.counts[MOVED, 0] = 1.0 if sense != 0 else 0.0
     clear_record(record)
-    include(record.ranges, 0, state[0])
-    begun = state[0]
+    include(record.ranges, 0, state[Z])
+    begun = state[Z]
     for interval in range(intervals):
         if _nothing_happens(single, interval, sense, beta):
             memory.counts[STUCK, 0] += h if sense == 0 else 0.0
@@ -349,8 +363,8 @@ def _return(single, h, intervals, start, sense, beta, memory, record):
         if not decided:
             return sense, False
     if sense != 0:
-        record.distance[0] += abs(state[0] - begun)
-    include(record.ranges, 0, state[0])
+        record.distance[0] += abs(state[Z] - begun)
+    include(record.ranges, 0, state[Z])
     return sense, True
 
 
@@ -364,11 +378,11 @@ def _keep_motion(problem, base, beta, start, sense, single, memory, record):
     start, sense : (z, z') and sense at the section
     single, memory, record : Single, Return, Record
     """
-    chi = single.numbers[4]
-    memory.start[0, 0] = (start[0] + single.numbers[5]) / chi
-    memory.start[1, 0] = (start[1] + single.numbers[6]) / chi
+    chi = single.numbers[CHI]
+    memory.start[Q, 0] = (start[0] + single.numbers[WALL]) / chi
+    memory.start[P, 0] = (start[1] + single.numbers[WALL_RATE]) / chi
     memory.senses[0] = sense
-    record.works[0, 0] = beta * record.distance[0]
+    record.works[OF_FRICTION, 0] = beta * record.distance[0]
     record.slips[LEAST_SLIP, 0] = 2.0 * record.distance[0] / base
     for i in range(record.masses.shape[0]):
         for part in range(2):
@@ -394,11 +408,11 @@ def solve_single(problem, row, single, beta, memory, record):
     """
     base = base_halves(problem)
     sign = 1.0 - 2.0 * (base % 2)
-    chi = single.numbers[4]
-    z = chi * memory.start[0, 0] - single.numbers[5]
-    p = chi * memory.start[1, 0] - single.numbers[6]
+    chi = single.numbers[CHI]
+    z = chi * memory.start[Q, 0] - single.numbers[WALL]
+    p = chi * memory.start[P, 0] - single.numbers[WALL_RATE]
     sense = memory.senses[0]
-    size = row.numbers[2] * abs(chi)
+    size = row.numbers[SIZE] * abs(chi)
     last = math.inf
     state = single.state
     for count in range(1, _MOST_RETURNS + 1):
@@ -407,13 +421,14 @@ def solve_single(problem, row, single, beta, memory, record):
         if not max(abs(z), abs(p)) <= LARGEST * size:
             return False, 0.5 * base * count, math.nan
         end, decided = _return(
-            single, row.numbers[0], base * row.intervals[0], (z, p), sense, beta, memory, record
+            single, row.numbers[H], base * row.intervals[0], (z, p), sense, beta, memory, record
         )
         end = -end if base == 1 else end
         if not decided or memory.counts[MOVED, 0] == 0.0:
             return False, 0.5 * base * count, math.nan
-        off_z, off_p = sign * state[0] - z, sign * state[1] - p
-        a, b, c, d = sign * state[2], sign * state[3], sign * state[4], sign * state[5]
+        off_z, off_p = sign * state[Z] - z, sign * state[RATE] - p
+        a, b = sign * state[Z_BY_Z], sign * state[Z_BY_RATE]
+        c, d = sign * state[RATE_BY_Z], sign * state[RATE_BY_RATE]
         multiplier = radius_of_two(a, b, c, d)
         off = max(abs(off_z), abs(off_p)) / max(size, abs(z), abs(p))
         enough = MEASURED * min(1.0, abs(1.0 - multiplier))
@@ -427,5 +442,5 @@ def solve_single(problem, row, single, beta, memory, record):
             p += (c * off_z + (1.0 - a) * off_p) / determinant
         else:  # the motion itself approaches the steady state
             last = math.inf
-            z, p, sense = sign * state[0], sign * state[1], end
+            z, p, sense = sign * state[Z], sign * state[RATE], end
     return False, 0.5 * base * _MOST_RETURNS, math.nan

@@ -16,7 +16,7 @@ import numpy as np
 from ..compiler import entry, inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store
 from .crossings import fill_controls, value_at
-from .problem import LONG, SECTION, TERMS, WIDTH, most_intervals
+from .problem import LONG, SECTION, TERMS, WIDTH, H, R, most_intervals
 
 #: Rows of `Single.series`: displacement and velocity of the motions that all intervals share ...
 PLACE, PLACE_RATE, PUSH, PUSH_RATE, YIELD, YIELD_RATE = 0, 1, 2, 3, 4, 5
@@ -25,6 +25,13 @@ _COMMON = 6
 #: ... and then of every interval: the holding force, displacement and velocity under it.
 _FORCE, _FORCED, _FORCED_RATE = 0, 1, 2
 _PER_INTERVAL = 3
+
+#: Places in `Single.numbers`: coefficients of the equation; w^2/chi^2, the force per displacement that holds
+#: the contact; its participation; wall and its rate at the section.
+KAPPA, DELTA, ETA, STIFFNESS, CHI, WALL, WALL_RATE = range(7)
+
+#: Places in `Single.state`: displacement, its rate, and the derivatives of both by those at the section.
+Z, RATE, Z_BY_Z, Z_BY_RATE, RATE_BY_Z, RATE_BY_RATE = range(6)
 
 #: Rows of `Single.controls`: the velocities of the shared motions, then two for every interval.
 _COMMON_CONTROLS, _CONTROLS = 3, 2
@@ -39,12 +46,12 @@ class Single(NamedTuple):
     """Tables of one r, and the memory of one motion."""
 
     fits: np.ndarray  # (1,) int: 1 if there are tables, 0 if not, _UNKNOWN before they are needed
-    numbers: np.ndarray  # (7,) kappa, delta, eta, w^2/chi^2, chi, wall and its rate at the section
+    numbers: np.ndarray  # (7,) see KAPPA
     series: np.ndarray  # (rows, WIDTH)
     controls: np.ndarray  # (rows, WIDTH) control points of the watched quantity, see `fill_controls`
     bounds: np.ndarray  # (rows,) bounds on their error
     ends: np.ndarray  # (rows,) the shared motions at the end of an interval, then z and z' under each force
-    state: np.ndarray  # (6,) z, z', and their derivatives by z and z' at the section
+    state: np.ndarray  # (6,) see Z
     scratch: np.ndarray  # (1, WIDTH)
 
 
@@ -99,7 +106,7 @@ def _expand(single, at):
     Its velocity is put in row `at + 1`.
     """
     series = single.series
-    kappa, delta, eta = single.numbers[0], single.numbers[1], single.numbers[2]
+    kappa, delta, eta = single.numbers[KAPPA], single.numbers[DELTA], single.numbers[ETA]
     for k in range(TERMS):
         push = eta * series[at - 1, k] if at > _COMMON else 0.0
         if at == YIELD and k == 0:
@@ -127,7 +134,7 @@ def _fill_common(single):
 @kernel
 def _holding_phasor(problem, row, n):
     """Return the cos and sin parts of harmonic n of the force that holds the contact at z = 0."""
-    chi, r, order = problem.chi[0, 0], row.numbers[1], problem.orders[n]
+    chi, r, order = problem.chi[0, 0], row.numbers[R], problem.orders[n]
     inertia = problem.squares[0] - r * r * order * order
     damping = r * order * problem.damping[0, 0]
     even, odd = 0.0, 0.0
@@ -142,7 +149,7 @@ def _holding_phasor(problem, row, n):
 @kernel
 def _fill_forces(problem, row, single, intervals):
     """Fill the holding force in all intervals."""
-    h = row.numbers[0]
+    h = row.numbers[H]
     for interval in range(intervals):
         for k in range(0, WIDTH, LANES):
             store(filled(0.0), single.series, force_row(interval) * WIDTH + k)
@@ -163,14 +170,16 @@ def _fill_forces(problem, row, single, intervals):
 @kernel
 def _fill_wall(problem, row, single):
     """Keep the displacement of the wall at the section, and its rate."""
-    single.numbers[5] = single.numbers[6] = 0.0
+    single.numbers[WALL] = single.numbers[WALL_RATE] = 0.0
     for d in range(problem.push.shape[1]):
         for n in range(problem.orders.size):
             angle = problem.orders[n] * SECTION
             c, s = math.cos(angle), math.sin(angle)
             a, b = row.phasors[0, d, n], row.phasors[1, d, n]
-            single.numbers[5] += problem.base[0, d] * (a * c + b * s)
-            single.numbers[6] += problem.base[0, d] * row.numbers[0] * problem.orders[n] * (b * c - a * s)
+            single.numbers[WALL] += problem.base[0, d] * (a * c + b * s)
+            single.numbers[WALL_RATE] += (
+                problem.base[0, d] * row.numbers[H] * problem.orders[n] * (b * c - a * s)
+            )
 
 
 @kernel
@@ -194,9 +203,9 @@ def fits_row(problem, row, single, base):
 def _fill(problem, row, single, intervals):
     """Fill the tables of a row, of some intervals."""
     chi = problem.chi[0, 0]
-    single.numbers[0], single.numbers[1] = row.stiffness[0], row.damping[0, 0]
-    single.numbers[2], single.numbers[3] = row.mobility[0, 0], problem.squares[0] / (chi * chi)
-    single.numbers[4] = chi
+    single.numbers[KAPPA], single.numbers[DELTA] = row.stiffness[0], row.damping[0, 0]
+    single.numbers[ETA], single.numbers[STIFFNESS] = row.mobility[0, 0], problem.squares[0] / (chi * chi)
+    single.numbers[CHI] = chi
     _fill_wall(problem, row, single)
     _fill_common(single)
     _fill_forces(problem, row, single, intervals)

@@ -23,7 +23,7 @@ from .course import (
     window_is_stationary,
     window_stops,
 )
-from .creep import end_creep, find_held, find_rest
+from .creep import end_creep, find_held, find_rest, keep_friction, restore_friction
 from .follow import FOLLOWED
 from .orbits import (
     AVERAGED,
@@ -41,16 +41,24 @@ from .places import (
     Places,
     fill_flexibility,
     find_rests,
-    keep_limits,
     keep_orbit,
     keep_orbit_anew,
     make_places,
-    restore_limits,
     settle_places,
     stop_contacts,
 )
-from .problem import Row, Work, make_row, make_work, set_row
+from .problem import H, Motion, Row, make_motion, make_row, set_row
 from .record import NOTHING, RANGES, STEPS, Record, clear_record, join_slips, make_record, mirror
+from .recurrence import (
+    Ring,
+    find_long_recurrence,
+    find_recurrence,
+    go_back,
+    go_back_cycles,
+    keep,
+    make_ring,
+    take_orbit,
+)
 from .return_map import (
     BITS,
     Return,
@@ -64,16 +72,6 @@ from .return_map import (
     steady_period,
     take_end,
 )
-from .returns import (
-    Ring,
-    go_back,
-    go_back_cycles,
-    keep,
-    long_recurrence,
-    make_ring,
-    recurrence,
-    take_orbit,
-)
 from .single_mass import solve_single
 from .single_tables import Single, fits_row, forget_row, make_single
 
@@ -85,11 +83,11 @@ _MOST_MEASURED = 10
 _CREEPS = 6
 
 
-class Tools(NamedTuple):
+class Workspace(NamedTuple):
     """The memory that steady states are found in."""
 
     row: Row
-    work: Work
+    motion: Motion
     memory: Return
     ring: Ring
     record: Record
@@ -100,38 +98,38 @@ class Tools(NamedTuple):
 
 
 @entry
-def make_tools(problem, masses, most):
+def make_workspace(problem, masses, most):
     """Allocate the memory, for a record of `most` steps; `masses` (n, m): see `make_record`."""
-    return Tools(
-        make_row(problem), make_work(problem), make_return(problem), make_ring(problem),
+    return Workspace(
+        make_row(problem), make_motion(problem), make_return(problem), make_ring(problem),
         make_record(problem, masses, most), make_single(problem, masses.shape[0]),
         make_course(problem, masses), make_places(problem), np.zeros(problem.spring.size),
     )  # fmt: skip
 
 
 @kernel
-def _go_on(problem, row, friction, base, work, memory, ring, record):
+def _go_on(problem, row, friction, base, motion, memory, ring, record):
     """Follow the motion from one return to the section to the next; return the code of `follow`.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
     base : half periods of the return map
-    work, memory, ring, record : Work, Return, Ring, Record
+    motion, memory, ring, record : Motion, Return, Ring, Record
     """
-    code = go_round(problem, row, friction, base, work, memory, record, False)
+    code = go_round(problem, row, friction, base, motion, memory, record, False)
     take_end(memory)
     keep(memory, ring)
     return code
 
 
 @kernel
-def _find_unique(problem, row, friction, cycles, tolerance, work, memory, ring, record):
+def _find_unique(problem, row, friction, cycles, tolerance, motion, memory, ring, record):
     """Find the steady state where every motion reaches it; see `find`.
 
     Parameters
     ----------
-    problem, row, friction, cycles, tolerance, work, memory, ring, record : see `find`
+    problem, row, friction, cycles, tolerance, motion, memory, ring, record : see `find`
     """
     base = base_halves(problem)
     spent = 0.0
@@ -139,18 +137,20 @@ def _find_unique(problem, row, friction, cycles, tolerance, work, memory, ring, 
     pause = 0
     while spent < cycles:
         if wait == 0:
-            status, more = find_rest(problem, row, friction, base, tolerance, work, memory, record, ring)
+            status, more = find_rest(problem, row, friction, base, tolerance, motion, memory, record, ring)
             spent += more
             pause += 1
             wait = pause
             if status != REPEATS and pause in (_CREEPS, 2 * _CREEPS):
-                status, more = find_held(problem, row, friction, base, tolerance, work, memory, record, ring)
+                status, more = find_held(
+                    problem, row, friction, base, tolerance, motion, memory, record, ring
+                )
                 spent += more
             if status == REPEATS:
                 end_creep(problem, friction, memory, record, ring)
                 return Steady(REPEATS, base, spent)
             go_back(memory, ring, 0)
-        code = _go_on(problem, row, friction, base, work, memory, ring, record)
+        code = _go_on(problem, row, friction, base, motion, memory, ring, record)
         spent += 0.5 * base
         if code != FOLLOWED:
             return Steady(1 + code, 0, spent)
@@ -172,7 +172,7 @@ def _averages(followed, at_last, memory, record, course):
 
 
 @kernel
-def _find_from_start(problem, row, friction, cycles, tolerance, work, memory, ring, record, course):
+def _find_from_start(problem, row, friction, cycles, tolerance, motion, memory, ring, record, course):
     """Find the steady state where it depends on the start; see `find`.
 
     The motion is compared with its last states at every return, and at times, ever more rarely, with those
@@ -180,7 +180,7 @@ def _find_from_start(problem, row, friction, cycles, tolerance, work, memory, ri
 
     Parameters
     ----------
-    problem, row, friction, cycles, tolerance, work, memory, ring, record, course : see `find`
+    problem, row, friction, cycles, tolerance, motion, memory, ring, record, course : see `find`
     """
     base = base_halves(problem)
     enough = enough_cycles(cycles)
@@ -191,14 +191,14 @@ def _find_from_start(problem, row, friction, cycles, tolerance, work, memory, ri
     wait = 0
     pause = 0
     while 0.5 * halves < cycles:
-        tried = recurrence(row, memory, ring, base) if wait == 0 else 0
+        tried = find_recurrence(row, memory, ring, base) if wait == 0 else 0
         due = halves >= search and halves % 2 == 0
         if due:
             search = next_search(halves)
-            longer = long_recurrence(row, memory, ring, base)
+            longer = find_long_recurrence(row, memory, ring, base)
             tried = longer if longer > 0 else tried
         if tried > 0:
-            found = try_return(problem, row, friction, tried, tolerance, work, memory, ring, record)
+            found = try_return(problem, row, friction, tried, tolerance, motion, memory, ring, record)
             spent += found.cycles
             if found.status == REPEATS:
                 return Steady(REPEATS, found.halves, spent + 0.5 * halves)
@@ -211,10 +211,10 @@ def _find_from_start(problem, row, friction, cycles, tolerance, work, memory, ri
         if halves == logged_from:
             begin_course(halves // 2, memory, record, course)
         if halves >= logged_from:
-            code = follow_cycle(problem, row, friction, halves // 2, work, memory, ring, record, course)
+            code = follow_cycle(problem, row, friction, halves // 2, motion, memory, ring, record, course)
             halves += 2
         else:
-            code = _go_on(problem, row, friction, base, work, memory, ring, record)
+            code = _go_on(problem, row, friction, base, motion, memory, ring, record)
             halves += base
         if code != FOLLOWED:
             return Steady(1 + code, 0, spent + 0.5 * halves)
@@ -224,7 +224,7 @@ def _find_from_start(problem, row, friction, cycles, tolerance, work, memory, ri
 
 
 @kernel
-def find(problem, row, friction, cycles, tolerance, work, memory, ring, record, course):
+def find(problem, row, friction, cycles, tolerance, motion, memory, ring, record, course):
     """Find the steady state that the motion from `memory.start` reaches.
 
     Parameters
@@ -232,8 +232,8 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record, 
     problem, row, friction : Problem, Row, Friction
     cycles : periods to follow at most
     tolerance : largest change of the state over a return, over its size
-    work, memory, ring, record, course : Work, Return, Ring, Record, Course; `memory.start` is replaced by the
-        steady state; where averages are found, they are in `memory.counts` and `record`
+    motion, memory, ring, record, course : Motion, Return, Ring, Record, Course; `memory.start` is replaced
+        by the steady state; where averages are found, they are in `memory.counts` and `record`
 
     Returns
     -------
@@ -245,30 +245,30 @@ def find(problem, row, friction, cycles, tolerance, work, memory, ring, record, 
     ring.count[0] = 0
     keep(memory, ring)
     if unique:
-        return _find_unique(problem, row, friction, cycles, tolerance, work, memory, ring, record)
-    return _find_from_start(problem, row, friction, cycles, tolerance, work, memory, ring, record, course)
+        return _find_unique(problem, row, friction, cycles, tolerance, motion, memory, ring, record)
+    return _find_from_start(problem, row, friction, cycles, tolerance, motion, memory, ring, record, course)
 
 
 @kernel
-def _refine(problem, row, friction, halves, count, work, memory, record, ring):
+def _refine(problem, row, friction, halves, count, motion, memory, record, ring):
     """Bring the state in `memory.start` nearer to the one that returns.
 
     That is done by Newton's method; where a contact at the edge of its limits misleads it, by the motion.
 
     Parameters
     ----------
-    problem, row, friction, halves, work, memory, record, ring : see `measure`
+    problem, row, friction, halves, motion, memory, record, ring : see `measure`
     count : returns that the motion is followed for
     """
-    status, _ = find_rest(problem, row, friction, halves, MEASURED, work, memory, record, ring)
+    status, _ = find_rest(problem, row, friction, halves, MEASURED, motion, memory, record, ring)
     if status != REPEATS:
         for _ in range(count):
-            if go_round(problem, row, friction, halves, work, memory, record, False) == FOLLOWED:
+            if go_round(problem, row, friction, halves, motion, memory, record, False) == FOLLOWED:
                 take_end(memory)
 
 
 @kernel
-def measure(problem, row, friction, halves, work, memory, record, ring, what):
+def measure(problem, row, friction, halves, motion, memory, record, ring, what):
     """Follow the steady state once more, into `record` and `memory.counts`.
 
     Where it does not quite return, or a contact only touches its limits, it is solved once more.
@@ -277,7 +277,7 @@ def measure(problem, row, friction, halves, work, memory, record, ring, what):
     ----------
     problem, row, friction : Problem, Row, Friction
     halves : half periods after which it returns
-    work, memory, record, ring : Work, Return, Record, Ring
+    motion, memory, record, ring : Motion, Return, Record, Ring
     what : NOTHING, RANGES, STEPS or FORCES, what is kept; STEPS and FORCES are kept of whole periods
 
     Returns
@@ -291,20 +291,20 @@ def measure(problem, row, friction, halves, work, memory, record, ring, what):
     for count in range(1, _MOST_MEASURED + 1):
         clear_record(record)
         record.active[0] = what
-        code = go_round(problem, row, friction, both, work, memory, record, what != NOTHING)
+        code = go_round(problem, row, friction, both, motion, memory, record, what != NOTHING)
         record.active[0] = NOTHING
         if code != FOLLOWED:
             return 0, math.nan
         most = MEASURED
         if what != NOTHING:
-            multiplier = largest_multiplier(problem, row, both, 0.0, work, memory)
+            multiplier = largest_multiplier(problem, row, both, 0.0, motion, memory)
             most *= min(1.0, abs(1.0 - multiplier))
         enough = most if count < _MOST_REPEATED else max(most, RETURNED)
         returns = return_distance(problem, row, memory) <= enough
         found = returns and not any_drifts(problem, memory.counts, both)
         if found:
             break
-        _refine(problem, row, friction, halves, count, work, memory, record, ring)
+        _refine(problem, row, friction, halves, count, motion, memory, record, ring)
     if not found:
         return 0, math.nan
     join_slips(record, both)
@@ -314,39 +314,43 @@ def measure(problem, row, friction, halves, work, memory, record, ring, what):
 
 
 @kernel
-def begin_row(problem, i, tools):
+def begin_row(problem, i, workspace):
     """Fill the constants of r[i]."""
-    set_row(problem, i, tools.row)
-    forget_row(tools.single)
+    set_row(problem, i, workspace.row)
+    forget_row(workspace.single)
 
 
 @kernel
-def solve(problem, friction, cycles, tolerance, tools, what):
-    """Find and measure the steady state of a cell, from the state in `tools.memory.start`.
+def solve(problem, friction, cycles, tolerance, workspace, what):
+    """Find and measure the steady state of a cell, from the state in `workspace.memory.start`.
 
     Parameters
     ----------
     problem, friction : Problem, Friction
     cycles, tolerance : see `find`
-    tools : Tools after `begin_row`
+    workspace : Workspace after `begin_row`
     what : NOTHING or RANGES, see `measure`
 
     Returns
     -------
     Steady, half periods measured, multiplier
     """
-    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     base = base_halves(problem)
-    if friction.static[0] <= friction.kinetic[0] and fits_row(problem, row, tools.single, base):
+    if friction.static[0] <= friction.kinetic[0] and fits_row(problem, row, workspace.single, base):
         solved, spent, multiplier = solve_single(
-            problem, row, tools.single, friction.kinetic[0], memory, record
+            problem, row, workspace.single, friction.kinetic[0], memory, record
         )
         if solved:
             return Steady(REPEATS, base, spent), base, multiplier
-    found = find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course)
+    found = find(
+        problem, row, friction, cycles, tolerance, motion, memory, workspace.ring, record, workspace.course
+    )
     if found.status != REPEATS:
         return found, 0, math.nan
-    halves, multiplier = measure(problem, row, friction, found.halves, work, memory, record, tools.ring, what)
+    halves, multiplier = measure(
+        problem, row, friction, found.halves, motion, memory, record, workspace.ring, what
+    )
     if halves == 0:
         found = Steady(CHATTERS, 0, found.cycles)
     return found, halves, multiplier
@@ -362,7 +366,7 @@ def is_unique(friction):
 
 
 @kernel
-def _find_anew(problem, friction, halves, tolerance, tools):
+def _find_anew(problem, friction, halves, tolerance, workspace):
     """Find a steady state anew from its rounded state; the periods followed.
 
     Parameters
@@ -370,15 +374,17 @@ def _find_anew(problem, friction, halves, tolerance, tools):
     problem, friction : Problem, Friction
     halves : half periods after which it returns
     tolerance : see `find`
-    tools : Tools; the steady state is that in `tools.ring`, and in the end in `tools.memory.start`
+    workspace : Workspace; the steady state is in `workspace.ring`, at the end in `workspace.memory.start`
     """
-    row, work, memory, ring = tools.row, tools.work, tools.memory, tools.ring
+    row, motion, memory, ring = workspace.row, workspace.motion, workspace.memory, workspace.ring
     spent = 0.0
     for bits in BITS:
         take_orbit(memory, ring)
         round_state(problem, friction, memory, bits)
-        if stop_contacts(problem, row, work, memory):
-            status, cycles = newton(problem, row, friction, halves, tolerance, work, memory, tools.record)
+        if stop_contacts(problem, row, motion, memory):
+            status, cycles = newton(
+                problem, row, friction, halves, tolerance, motion, memory, workspace.record
+            )
             spent += cycles
             if status == REPEATS:
                 return spent
@@ -387,79 +393,81 @@ def _find_anew(problem, friction, halves, tolerance, tools):
 
 
 @kernel
-def _settle(problem, friction, state, found, cycles, tolerance, tools):
+def _settle(problem, friction, state, found, cycles, tolerance, workspace):
     """Give the contacts at rest the places to which the motion leads from its start.
 
     Parameters
     ----------
     problem, friction : Problem, Friction
     state : (2, m) modes and their velocities q' at tau = 0
-    found : Steady, the one in `tools.memory.start`
+    found : Steady, the one in `workspace.memory.start`
     cycles, tolerance : see `find`
-    tools : Tools after `find_rests`
+    workspace : Workspace after `find_rests`
 
     Returns
     -------
     Steady
     """
-    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
-    places, ring = tools.places, tools.ring
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+    places, ring = workspace.places, workspace.ring
     halves = found.halves if found.halves % 2 == 0 else 2 * found.halves
     if not is_unique(friction):  # the motion is near the steady state, which stays where it cannot be moved
         fill_flexibility(problem, places)
-        if not keep_orbit(problem, row, friction, halves, work, memory, record, places):
+        if not keep_orbit(problem, row, friction, halves, motion, memory, record, places):
             take_orbit(memory, ring)
             return found
         go_back(memory, ring, 0)
-        _, more = settle_places(problem, row, friction, halves, cycles, work, memory, record, places)
+        _, more = settle_places(problem, row, friction, halves, cycles, motion, memory, record, places)
         return Steady(REPEATS, halves, found.cycles + more)
     kept, spent = False, found.cycles
     for bits in BITS:
         if not kept:
             take_orbit(memory, ring)
             kept, more = keep_orbit_anew(
-                problem, row, friction, halves, tolerance, bits, work, memory, record, places
+                problem, row, friction, halves, tolerance, bits, motion, memory, record, places
             )
             spent += more
     if not kept:  # rounding takes away what hardly moves
         take_orbit(memory, ring)
-        kept = keep_orbit(problem, row, friction, halves, work, memory, record, places)
+        kept = keep_orbit(problem, row, friction, halves, motion, memory, record, places)
     if not kept:
         return Steady(NO_REPEAT, 0, spent)
-    from_rest(problem, row, friction, state, work, memory, record, NOTHING)
-    known, more = settle_places(problem, row, friction, halves, cycles, work, memory, record, places)
+    from_rest(problem, row, friction, state, motion, memory, record, NOTHING)
+    known, more = settle_places(problem, row, friction, halves, cycles, motion, memory, record, places)
     return Steady(REPEATS if known else NO_REPEAT, halves, spent + more)
 
 
 @kernel
-def _locate(problem, friction, cycles, tolerance, tools, by_tables):
-    """Find a steady state from `tools.memory.start`.
+def _locate(problem, friction, cycles, tolerance, workspace, by_tables):
+    """Find a steady state from `workspace.memory.start`.
 
     Parameters
     ----------
-    problem, friction, cycles, tolerance, tools : see `solve_from`
+    problem, friction, cycles, tolerance, workspace : see `solve_from`
     by_tables : whether the tables of one mass can be used
     """
-    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     if by_tables:
-        located, spent, _ = solve_single(problem, row, tools.single, friction.kinetic[0], memory, record)
+        located, spent, _ = solve_single(problem, row, workspace.single, friction.kinetic[0], memory, record)
         if located:
             return Steady(REPEATS, base_halves(problem), spent)
-    return find(problem, row, friction, cycles, tolerance, work, memory, tools.ring, record, tools.course)
+    return find(
+        problem, row, friction, cycles, tolerance, motion, memory, workspace.ring, record, workspace.course
+    )
 
 
 @kernel
-def solve_from(problem, friction, state, cycles, tolerance, tools, what, settled):
+def solve_from(problem, friction, state, cycles, tolerance, workspace, what, settled):
     """Find and measure the steady state that the motion from a state at tau = 0 reaches.
 
-    It is looked for from the state in `tools.memory.start`, on which it does not depend for mu = 1.
+    It is looked for from the state in `workspace.memory.start`, on which it does not depend for mu = 1.
 
     Parameters
     ----------
     problem, friction : Problem, Friction; contacts at rest get a friction without limit
     state : (2, m) modes and their velocities q' at tau = 0
     cycles, tolerance : see `find`
-    tools : Tools after `begin_row`
+    workspace : Workspace after `begin_row`
     what : see `measure`
     settled : whether the places of contacts at rest are wanted, and bits that do not depend on the way
 
@@ -467,32 +475,32 @@ def solve_from(problem, friction, state, cycles, tolerance, tools, what, settled
     -------
     Steady, half periods measured, multiplier
     """
-    row, memory, record = tools.row, tools.memory, tools.record
+    row, memory, record = workspace.row, workspace.memory, workspace.record
     base, unique = base_halves(problem), is_unique(friction)
-    by_tables = what == RANGES and unique and fits_row(problem, row, tools.single, base)
-    keep_limits(friction, tools.places)
-    found = _locate(problem, friction, cycles, tolerance, tools, by_tables)
+    by_tables = what == RANGES and unique and fits_row(problem, row, workspace.single, base)
+    keep_friction(friction, workspace.places.limits)
+    found = _locate(problem, friction, cycles, tolerance, workspace, by_tables)
     if found.status == REPEATS and settled:
-        restore_limits(friction, tools.places)
-        copy_motion(memory.start, memory.senses, tools.ring.orbit, tools.ring.orbit_senses)
+        restore_friction(friction, workspace.places.limits)
+        copy_motion(memory.start, memory.senses, workspace.ring.orbit, workspace.ring.orbit_senses)
         if not unique:  # the last way was not over the whole period
-            go_round(problem, row, friction, found.halves, tools.work, memory, record, False)
-        if find_rests(memory, tools.places) > 0:
-            found = _settle(problem, friction, state, found, cycles, tolerance, tools)
+            go_round(problem, row, friction, found.halves, workspace.motion, memory, record, False)
+        if find_rests(memory, workspace.places) > 0:
+            found = _settle(problem, friction, state, found, cycles, tolerance, workspace)
         elif unique:
             if by_tables:
                 round_state(problem, friction, memory, BITS[0])
                 solved, spent, multiplier = solve_single(
-                    problem, row, tools.single, friction.kinetic[0], memory, record
+                    problem, row, workspace.single, friction.kinetic[0], memory, record
                 )
                 if solved:
                     return Steady(REPEATS, base, found.cycles + spent), base, multiplier
-            spent = _find_anew(problem, friction, found.halves, tolerance, tools)
+            spent = _find_anew(problem, friction, found.halves, tolerance, workspace)
             found = Steady(REPEATS, found.halves, found.cycles + spent)
     if found.status != REPEATS:
         return found, 0, math.nan
     halves, multiplier = measure(
-        problem, row, friction, found.halves, tools.work, memory, record, tools.ring, what
+        problem, row, friction, found.halves, workspace.motion, memory, record, workspace.ring, what
     )
     if halves == 0:
         found = Steady(CHATTERS, 0, found.cycles)
@@ -500,36 +508,38 @@ def solve_from(problem, friction, state, cycles, tolerance, tools, what, settled
 
 
 @kernel
-def _one(problem, i, friction, state, limits, tools, settled):
+def _one(problem, i, friction, state, limits, workspace, settled):
     """Find the steady state of one cell, and record it.
 
     Parameters
     ----------
     problem, i, friction, state, settled : see `one_steady_state`
     limits : cycles, tolerance
-    tools : Tools
+    workspace : Workspace
 
     Returns
     -------
     Steady, half periods, multiplier
     """
-    problem, friction, tools = packed(problem), packed(friction), packed(tools)
-    row, work, memory, record = tools.row, tools.work, tools.memory, tools.record
+    problem, friction, workspace = packed(problem), packed(friction), packed(workspace)
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     cycles, tolerance = limits
-    begin_row(problem, i, tools)
-    from_rest(problem, row, friction, state, work, memory, record, NOTHING)
-    found, halves, multiplier = solve_from(problem, friction, state, cycles, tolerance, tools, STEPS, settled)
+    begin_row(problem, i, workspace)
+    from_rest(problem, row, friction, state, motion, memory, record, NOTHING)
+    found, halves, multiplier = solve_from(
+        problem, friction, state, cycles, tolerance, workspace, STEPS, settled
+    )
     if found.status == REPEATS:
         return found, halves, multiplier
     halves = 2
     if found.status == AVERAGED:  # the first phase shown is a maximum of the load, after the first section
         halves = 2 * (WINDOW + 1)
-        go_back_cycles(problem, memory, tools.ring, WINDOW + 1)
+        go_back_cycles(problem, memory, workspace.ring, WINDOW + 1)
     clear_record(record)
     record.active[0] = STEPS
-    go_round(problem, row, friction, halves, work, memory, record, False)
+    go_round(problem, row, friction, halves, motion, memory, record, False)
     if found.status == AVERAGED:
-        take_window(tools.course, memory.counts, record)
+        take_window(workspace.course, memory.counts, record)
     return found, halves, multiplier
 
 
@@ -552,6 +562,6 @@ def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, mos
     Steady, half periods that the steps cover (two if there is no steady state, WINDOW periods and one before
     them if there are averages), multiplier, counts (see `follow`), Record, h
     """
-    tools = make_tools(problem, masses, most)
-    found, halves, multiplier = _one(problem, i, friction, state, (cycles, tolerance), tools, settled)
-    return found, halves, multiplier, tools.memory.counts, tools.record, tools.row.numbers[0]
+    workspace = make_workspace(problem, masses, most)
+    found, halves, multiplier = _one(problem, i, friction, state, (cycles, tolerance), workspace, settled)
+    return found, halves, multiplier, workspace.memory.counts, workspace.record, workspace.row.numbers[H]

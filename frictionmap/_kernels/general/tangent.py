@@ -12,44 +12,44 @@ from .problem import INVERSE, LONG, TERMS, state_size
 
 
 @kernel
-def identity(problem, work):
+def identity(problem, motion):
     """Begin: the derivatives at the section itself; the force of an elastic contact that slips is given."""
     size = state_size(problem)
     for a in range(size):
-        for b in range(work.tangent.shape[1]):
-            work.tangent[a, b] = 1.0 if a == b else 0.0
-    for j in range(work.sense.size):
+        for b in range(motion.tangent.shape[1]):
+            motion.tangent[a, b] = 1.0 if a == b else 0.0
+    for j in range(motion.sense.size):
         a = 2 * problem.push.shape[0] + j
-        if work.sense[j] != 0 and a < size:
-            work.tangent[a, a] = 0.0
+        if motion.sense[j] != 0 and a < size:
+            motion.tangent[a, a] = 0.0
 
 
 @inner_kernel
-def _solve_columns(work, right):
+def _solve_columns(motion, right):
     """`solve_held` for all columns; rows 0.. of `right` belong to the held contacts in their order."""
-    count = work.held[work.sense.size]
+    count = motion.held[motion.sense.size]
     size = right.shape[1]
     for i in range(0, size, LANES):
         for a in range(count):
             part = load(right, a * size + i)
             for c in range(a):
-                part = part - load(right, c * size + i) * work.solve[a, c]
-            store(part * (1.0 / work.solve[a, a]), right, a * size + i)
+                part = part - load(right, c * size + i) * motion.solve[a, c]
+            store(part * (1.0 / motion.solve[a, a]), right, a * size + i)
         for a in range(count - 1, -1, -1):
             part = load(right, a * size + i)
             for c in range(a + 1, count):
-                part = part - load(right, c * size + i) * work.solve[c, a]
-            store(part * (1.0 / work.solve[a, a]), right, a * size + i)
+                part = part - load(right, c * size + i) * motion.solve[c, a]
+            store(part * (1.0 / motion.solve[a, a]), right, a * size + i)
 
 
 @inner_kernel
-def _elastic_term(problem, row, work, k, first):
+def _elastic_term(problem, row, motion, k, first):
     """Take the derivatives of the forces of elastic contacts that are held from term k + 2."""
     modes = problem.push.shape[0]
-    columns, size = row.columns, work.tangent.shape[1]
+    columns, size = row.columns, motion.tangent.shape[1]
     inverse = INVERSE[k]
     for j in range(problem.spring.size):
-        if problem.spring[j] == 0.0 or work.sense[j] != 0 or work.idle[j]:
+        if problem.spring[j] == 0.0 or motion.sense[j] != 0 or motion.idle[j]:
             continue
         for i in range(0, size, LANES):
             force = filled(0.0)
@@ -63,20 +63,20 @@ def _elastic_term(problem, row, work, k, first):
 
 
 @inner_kernel
-def _own_force(problem, row, work, slot):
+def _own_force(problem, row, motion, slot):
     """Take from term 2 the forces that elastic contacts begin with, which are coordinates of the state."""
     modes = problem.push.shape[0]
     for j in range(problem.spring.size):
-        if problem.spring[j] != 0.0 and work.sense[j] == 0:
+        if problem.spring[j] != 0.0 and motion.sense[j] == 0:
             for m in range(modes):
                 row.columns[slot, 2, m, 2 * modes + j] -= INVERSE[0] * row.reaction[j, m]
 
 
 @inner_kernel
-def _free_columns(problem, row, work, k, first):
+def _free_columns(problem, row, motion, k, first):
     """Fill term k + 2 of the columns without forces of held contacts."""
     modes = problem.push.shape[0]
-    columns, size = row.columns, work.tangent.shape[1]
+    columns, size = row.columns, motion.tangent.shape[1]
     inverse = INVERSE[k]
     for m in range(modes):
         of_place, of_velocity = row.place_term[k, m], row.velocity_term[k, m]
@@ -91,41 +91,41 @@ def _free_columns(problem, row, work, k, first):
 
 
 @inner_kernel
-def _holding_columns(problem, row, work, k, first):
+def _holding_columns(problem, row, motion, k, first):
     """Fill the derivatives of the holding forces, over (k+1)(k+2), and take them from term k + 2."""
     modes = problem.push.shape[0]
-    columns, size = row.columns, work.tangent.shape[1]
-    count = work.held[problem.spring.size]
+    columns, size = row.columns, motion.tangent.shape[1]
+    count = motion.held[problem.spring.size]
     for a in range(count):
-        j = work.held[a]
+        j = motion.held[a]
         for i in range(0, size, LANES):
             part = filled(0.0)
             for m in range(modes):
                 part = part + load(columns, first + ((k + 2) * modes + m) * size + i) * problem.chi[j, m]
-            store(part, work.forces, a * size + i)
-    _solve_columns(work, work.forces)
+            store(part, motion.forces, a * size + i)
+    _solve_columns(motion, motion.forces)
     for a in range(count):
-        j = work.held[a]
+        j = motion.held[a]
         for m in range(modes):
             for i in range(0, size, LANES):
                 at = first + ((k + 2) * modes + m) * size + i
-                part = load(work.forces, a * size + i) * row.reaction[j, m]
+                part = load(motion.forces, a * size + i) * row.reaction[j, m]
                 store(load(columns, at) - part, columns, at)
 
 
 @inner_kernel
-def _onward(problem, row, work, slot, x, table, at):
+def _onward(problem, row, motion, slot, x, table, at):
     """Fill the derivatives over x of a step with the present pattern, from their series.
 
     Parameters
     ----------
-    problem, row, work : Problem, Row, Work
+    problem, row, motion : Problem, Row, Motion
     slot : place of the pattern in the row
     x : length of the step
     table, at : (..., size, S), and the place in it that is filled
     """
     modes, contacts = problem.push.shape[0], problem.spring.size
-    columns, size = row.columns, work.tangent.shape[1]
+    columns, size = row.columns, motion.tangent.shape[1]
     count = state_size(problem)
     first = slot * LONG * modes * size
     into = at * count * size
@@ -143,7 +143,7 @@ def _onward(problem, row, work, slot, x, table, at):
     for j in range(contacts):
         for i in range(size):
             force = 1.0 if i == 2 * modes + j else 0.0
-            if problem.spring[j] != 0.0 and work.sense[j] == 0 and not work.idle[j]:
+            if problem.spring[j] != 0.0 and motion.sense[j] == 0 and not motion.idle[j]:
                 for m in range(modes):
                     moved = table[at, m, i] - (1.0 if i == m else 0.0)
                     force += problem.spring[j] * problem.chi[j, m] * moved
@@ -151,137 +151,141 @@ def _onward(problem, row, work, slot, x, table, at):
 
 
 @kernel
-def _fill_pattern(problem, row, work, slot):
+def _fill_pattern(problem, row, motion, slot):
     """Fill the derivatives of motions with the present pattern by the state at their beginning."""
     modes, contacts = problem.push.shape[0], problem.spring.size
-    size = work.tangent.shape[1]
+    size = motion.tangent.shape[1]
     first = slot * LONG * modes * size
     for m in range(modes):
         for i in range(size):
             row.columns[slot, 0, m, i] = 1.0 if i == m else 0.0
             row.columns[slot, 1, m, i] = 1.0 if i == modes + m else 0.0
     for k in range(TERMS):
-        _free_columns(problem, row, work, k, first)
+        _free_columns(problem, row, motion, k, first)
         if k == 0:
-            _own_force(problem, row, work, slot)
-        _elastic_term(problem, row, work, k, first)
-        if work.held[contacts] > 0:
-            _holding_columns(problem, row, work, k, first)
+            _own_force(problem, row, motion, slot)
+        _elastic_term(problem, row, motion, k, first)
+        if motion.held[contacts] > 0:
+            _holding_columns(problem, row, motion, k, first)
         if k == 0:
-            for a in range(work.held[contacts]):
+            for a in range(motion.held[contacts]):
                 for i in range(size):
-                    row.grips[slot, work.held[a], i] = 2.0 * work.forces[a, i]
-    _onward(problem, row, work, slot, 1.0, row.onward, slot)
+                    row.grips[slot, motion.held[a], i] = 2.0 * motion.forces[a, i]
+    _onward(problem, row, motion, slot, 1.0, row.onward, slot)
 
 
 @kernel
-def pattern_slot(problem, row, work):
+def pattern_slot(problem, row, motion):
     """Place of the present pattern in the tables of the row, filled if it is new there."""
     pattern = 0
-    for j in range(work.sense.size):
-        if work.sense[j] == 0:
+    for j in range(motion.sense.size):
+        if motion.sense[j] == 0:
             pattern += 1 << j
     slot = pattern % row.patterns.size
     if row.patterns[slot] != pattern + 1:
-        _fill_pattern(problem, row, work, slot)
+        _fill_pattern(problem, row, motion, slot)
         row.patterns[slot] = pattern + 1
     return slot
 
 
 @kernel
-def advance_tangent(problem, row, work, x):
+def advance_tangent(problem, row, motion, x):
     """Carry the derivatives through x of the present step."""
-    slot = pattern_slot(problem, row, work)
+    slot = pattern_slot(problem, row, motion)
     if x == 1.0:
-        _multiply(problem, row.onward, slot, work)
+        _multiply(problem, row.onward, slot, motion)
     else:
-        _onward(problem, row, work, slot, x, work.onward, 0)
-        _multiply(problem, work.onward, 0, work)
+        _onward(problem, row, motion, slot, x, motion.onward, 0)
+        _multiply(problem, motion.onward, 0, motion)
 
 
 @inner_kernel
-def _multiply(problem, table, at, work):
+def _multiply(problem, table, at, motion):
     """Multiply the derivatives by those over a step, which are at this place of a table."""
-    count, size = state_size(problem), work.tangent.shape[1]
+    count, size = state_size(problem), motion.tangent.shape[1]
     product = count * size  # the second half of the scratch
     for i in range(0, size, LANES):
         for a in range(count):
             part = filled(0.0)
             for b in range(count):
-                part = part + load(work.tangent, b * size + i) * table[at, a, b]
-            store(part, work.onward, product + a * size + i)
+                part = part + load(motion.tangent, b * size + i) * table[at, a, b]
+            store(part, motion.onward, product + a * size + i)
         for a in range(count):
-            store(load(work.onward, product + a * size + i), work.tangent, a * size + i)
+            store(load(motion.onward, product + a * size + i), motion.tangent, a * size + i)
 
 
 @kernel
-def watched_row(problem, row, work, j, sign, out):
+def watched_row(problem, row, motion, j, sign, out):
     """Derivative of the watched quantity of contact j: its velocity, or minus `sign` times its force.
 
     Parameters
     ----------
-    problem, row, work : Problem, Row, Work; the pattern is that of before the event
+    problem, row, motion : Problem, Row, Motion; the pattern is that of before the event
     j : contact
     sign : 0: its velocity is watched; 1, -1: the distance of its force from that side of its range
     out : (S,) filled
     """
     modes = problem.push.shape[0]
-    size = work.tangent.shape[1]
-    slot = pattern_slot(problem, row, work) if sign != 0 else 0
+    size = motion.tangent.shape[1]
+    slot = pattern_slot(problem, row, motion) if sign != 0 else 0
     for i in range(0, size, LANES):
         part = filled(0.0)
         if sign == 0:
             for m in range(modes):
-                part = part + load(work.tangent, (modes + m) * size + i) * problem.chi[j, m]
+                part = part + load(motion.tangent, (modes + m) * size + i) * problem.chi[j, m]
         elif problem.spring[j] != 0.0:
-            part = part - load(work.tangent, (2 * modes + j) * size + i) * float(sign)
+            part = part - load(motion.tangent, (2 * modes + j) * size + i) * float(sign)
         else:
             for b in range(state_size(problem)):
-                part = part - load(work.tangent, b * size + i) * (sign * row.grips[slot, j, b])
+                part = part - load(motion.tangent, b * size + i) * (sign * row.grips[slot, j, b])
         store(part, out, i)
 
 
 @kernel
-def through_event(problem, row, work, drop, watched, slope):
+def through_event(problem, row, motion, drop, watched, slope):
     """Carry the derivatives through an event.
 
     Parameters
     ----------
-    problem, row, work : Problem, Row, Work; the pattern is that of after the event
+    problem, row, motion : Problem, Row, Motion; the pattern is that of after the event
     drop : (N,) forces after the event less those before it
     watched : (S,) derivatives of the watched quantity
     slope : its rate of change along the motion before the event
     """
     modes = problem.push.shape[0]
-    size = work.tangent.shape[1]
+    size = motion.tangent.shape[1]
     for j in range(problem.spring.size):
         if drop[j] != 0.0:
             for m in range(modes):
                 factor = -row.reaction[j, m] * drop[j] / slope
                 for i in range(0, size, LANES):
                     at = (modes + m) * size + i
-                    store(load(work.tangent, at) + load(watched, i) * factor, work.tangent, at)
-        if problem.spring[j] != 0.0 and work.sense[j] != 0:
+                    store(load(motion.tangent, at) + load(watched, i) * factor, motion.tangent, at)
+        if problem.spring[j] != 0.0 and motion.sense[j] != 0:
             for i in range(size):
-                work.tangent[2 * modes + j, i] = 0.0
+                motion.tangent[2 * modes + j, i] = 0.0
 
 
 @kernel
-def hold_tangent(problem, row, work):
+def hold_tangent(problem, row, motion):
     """Take the velocities of held contacts from the derivatives: they are rounding error."""
     modes = problem.push.shape[0]
-    size = work.tangent.shape[1]
-    count = work.held[problem.spring.size]
+    size = motion.tangent.shape[1]
+    count = motion.held[problem.spring.size]
     for a in range(count):
         for i in range(0, size, LANES):
             part = filled(0.0)
             for m in range(modes):
-                part = part + load(work.tangent, (modes + m) * size + i) * problem.chi[work.held[a], m]
-            store(part, work.forces, a * size + i)
-    _solve_columns(work, work.forces)
+                part = part + load(motion.tangent, (modes + m) * size + i) * problem.chi[motion.held[a], m]
+            store(part, motion.forces, a * size + i)
+    _solve_columns(motion, motion.forces)
     for a in range(count):
         for m in range(modes):
-            reaction = row.reaction[work.held[a], m]
+            reaction = row.reaction[motion.held[a], m]
             for i in range(0, size, LANES):
                 at = (modes + m) * size + i
-                store(load(work.tangent, at) - load(work.forces, a * size + i) * reaction, work.tangent, at)
+                store(
+                    load(motion.tangent, at) - load(motion.forces, a * size + i) * reaction,
+                    motion.tangent,
+                    at,
+                )

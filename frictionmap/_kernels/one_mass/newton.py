@@ -13,7 +13,7 @@ import math
 from ..closed_form import decay
 from ..compiler import kernel
 from ..event_codes import NO_END, REVERSE, STOP_THEN_BACK, STOP_THEN_ON
-from ..newton_limits import LONGEST_SLIDE, MAX_NEWTON, NEAR_END, next_step_negligible
+from ..newton_limits import LONGEST_SLIDE, MAX_NEWTON, NEAR_END, ROUNDING, next_step_negligible
 from .events import after_slide, slide_within
 
 
@@ -163,7 +163,7 @@ def solve_orbit(step, oscillator, b, mu_b, z, c, s, after_stop, sequence, tolera
             sine = math.sin(turn)
             c, s = c * cosine - s * sine, s * cosine + c * sine
         off = abs(miss) + abs(late) * abs(z)
-        if size <= 1e-16 * abs(z) or next_step_negligible(size, last, off, abs(z), tolerance):
+        if size <= ROUNDING * abs(z) or next_step_negligible(size, last, off, abs(z), tolerance):
             if after_stop:
                 c, s = stop_ends(mu_b, z)
             return True, z, c, s, contraction

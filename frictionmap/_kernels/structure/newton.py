@@ -15,7 +15,7 @@ from ..closed_form import decay
 from ..compiler import entry, inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store
 from ..event_codes import GRAZING, REVERSE, STOP_THEN_BACK, STOP_THEN_ON, STUCK
-from ..newton_limits import MAX_NEWTON, NEAR_END, next_step_negligible
+from ..newton_limits import MAX_NEWTON, NEAR_END, ROUNDING_OF_MANY, next_step_negligible
 from .events import NO_RELEASE, UNDER_WAY, after_slide, slide_on
 from .oscillators import AT_LIMIT, COLUMNS, FELL, OMEGA, OW, OZ, ZETA, make_state, padded
 from .state import PUSH, SPEED, SPEED_RATE, STATIC_SHAPE, Z_RATE, Z, energy
@@ -394,7 +394,7 @@ def solve_return(st, beta, mu_beta, c, s, sequence, halves, tolerance, work, scr
         for i in range(n):
             work.middle[0, i] += work.moved[0, i]
             work.middle[1, i] += work.moved[1, i]
-        if move <= 1e-15 * scale or next_step_negligible(move, last, miss, scale, tolerance):
+        if move <= ROUNDING_OF_MANY * scale or next_step_negligible(move, last, miss, scale, tolerance):
             return True
         last = move
     return False

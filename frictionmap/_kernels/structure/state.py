@@ -168,7 +168,7 @@ def _feedthrough(modes, row):
 
 
 @entry
-def _in_columns(matrix, rows, parts, n):
+def _padded_parts(matrix, rows, parts, n):
     """Return a matrix (rows, parts n) with each part padded by zeros to whole vectors."""
     width = padded(n)
     out = np.zeros((rows, parts * width))
@@ -195,7 +195,7 @@ def make_structure(model, loads, i, r, steps):
     h = turn / max(1.0, fastest / r)
     scale = h / r
     free = np.zeros((n + 1, COLUMNS))
-    modes = _in_columns(model.modes, MODE_ROWS, 1, n)
+    modes = _padded_parts(model.modes, MODE_ROWS, 1, n)
     _fill_free(loads, i, scale, n, modes, free)
     fill_steps(free, h, terms)
     speed_cos, speed_sin = _feedthrough(modes, SPEED_RATE)
@@ -217,7 +217,7 @@ def make_structure(model, loads, i, r, steps):
         model.overlap, model.norm,
         load_cos - loads.contact_cos[i], load_sin - loads.contact_sin[i], displacement_cos, displacement_sin,
         modes, free, held, free_block, held_block, feedthrough,
-        _in_columns(model.to_held.T, 2 * n, 2, m), _in_columns(model.to_free.T, 2 * m, 2, n),
+        _padded_parts(model.to_held.T, 2 * n, 2, m), _padded_parts(model.to_free.T, 2 * m, 2, n),
     )  # fmt: skip
 
 
@@ -382,12 +382,12 @@ def _fill_steady(table, block):
         y_im += table[k, OZ] * a_im + table[k, OW] * h * a_re
         block[EQUATION + STEADY_RE * width + k] = a_re
         block[EQUATION + STEADY_IM * width + k] = a_im
-        block[EQUATION + REACH * width + k] = _reach(table, k)
+        block[EQUATION + REACH * width + k] = _unit_energy_amplitude(table, k)
     block[STEADY_LOAD], block[STEADY] = math.hypot(y_re, y_im), 1.0
 
 
 @kernel
-def _reach(table, k):
+def _unit_energy_amplitude(table, k):
     """Largest y of free motion of an oscillator of unit energy."""
     return math.sqrt(table[k, OZ] * table[k, OZ] / table[k, K] + table[k, OW] * table[k, OW])
 
@@ -429,7 +429,7 @@ def _largest_load_to_come(st, held, z, c, s):
         w_off = held[1, k] + h * (a_re * s + a_im * c)
         y_re += table[k, OZ] * a_re - table[k, OW] * h * a_im
         y_im += table[k, OZ] * a_im + table[k, OW] * h * a_re
-        free += _reach(table, k) * math.sqrt(table[k, K] * z_off * z_off + w_off * w_off)
+        free += _unit_energy_amplitude(table, k) * math.sqrt(table[k, K] * z_off * z_off + w_off * w_off)
     return math.hypot(y_re, y_im) + abs(st.stiffness * z) + free
 
 

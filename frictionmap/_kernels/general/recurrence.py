@@ -1,4 +1,4 @@
-"""States at the section that are kept, and how long ago the motion was where it is now."""
+"""Recurrence detection: the last states at the section, and whether the motion has returned to one."""
 
 import math
 from typing import NamedTuple
@@ -8,7 +8,7 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..long_periods import LONGEST_RECURRENCE, RETURNED_AFTER_LONG
 from .follow import COUNT_ROWS
-from .problem import padded
+from .problem import SIZE, padded
 from .return_map import base_halves, copy_motion, largest_difference, steady_period
 
 #: Returns one after the other that a long period is recognised by.
@@ -75,7 +75,7 @@ def distance_back(row, memory, ring, ago, back):
     for j in range(memory.senses.size):
         if ring.senses[now, j] != ring.senses[then, j]:
             return math.inf
-    size = row.numbers[2]
+    size = row.numbers[SIZE]
     for part in range(2):
         for i in range(memory.start.shape[1]):
             size = max(size, abs(ring.states[now, part, i]))
@@ -83,8 +83,8 @@ def distance_back(row, memory, ring, ago, back):
 
 
 @kernel
-def recurrence(row, memory, ring, base):
-    """Number of half periods after which the motion is nearly back; 0 if it is not within _SOON states."""
+def find_recurrence(row, memory, ring, base):
+    """Half periods since the earlier state that the present one nearly equals; 0 without one."""
     most = min(ring.count[0] - 1, _SOON)
     for back in range(1, most + 1):
         if distance_back(row, memory, ring, 0, back) < _NEAR:
@@ -102,10 +102,8 @@ def _returns_in_a_row(row, memory, ring, back):
 
 
 @kernel
-def long_recurrence(row, memory, ring, base):
-    """Number of half periods, of a period up to half of LONGEST_RECURRENCE, after which the motion has
-    returned several times in a row; 0 if it has not.
-    """
+def find_long_recurrence(row, memory, ring, base):
+    """Half periods, up to LONGEST_RECURRENCE, after which it has returned several times in a row; else 0."""
     most = min(ring.count[0] - _IN_A_ROW, LONGEST_RECURRENCE // base)
     for back in range(1, most + 1):
         halves = back * base

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .. import regimes
-from .._kernels.general.follow import MOVED
+from .._kernels.general.counts import MOVED
 from .._kernels.general.samples import fill_phasors
 from .._kernels.general.series import Friction
 from .._kernels.general.steady import REPEATS

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._kernels.general.follow import MOVED, NEAREST_STOP, SLIPS, STOPS, STUCK
+from .._kernels.general.counts import MOVED, NEAREST_STOP, SLIPS, STOPS, STUCK
 from .._kernels.general.problem import TURN, Problem
 from .._kernels.general.samples import fill_samples
 from .._kernels.general.series import Friction

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import regimes
-from .._kernels.general.follow import (
+from .._kernels.general.counts import (
     MOVED,
     RELEASE_ORDER,
     REVERSALS,

@@ -9,9 +9,9 @@ import frictionmap as fm
 from benchmarks.measures.own_entry import own_entry
 from frictionmap._kernels.compiler.packed import packed
 from frictionmap._kernels.general import record, steady
+from frictionmap._kernels.general.counts import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
 from frictionmap._kernels.general.course import begin_course, follow_cycle, set_window, take_window
-from frictionmap._kernels.general.follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
-from frictionmap._kernels.general.problem import set_row
+from frictionmap._kernels.general.row import set_row
 from frictionmap._kernels.general.series import Friction
 from frictionmap.general.boundaries import friction_lines, rest_states
 from frictionmap.general.problem import problem_of

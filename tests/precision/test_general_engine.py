@@ -7,7 +7,7 @@ import pytest
 from general_systems import Solved, chain, matrices, phasors, vector
 
 import frictionmap as fm
-from frictionmap._kernels.general.follow import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
+from frictionmap._kernels.general.counts import MOVED, REVERSALS, SLIPS, STOPS, STUCK, TURNS
 
 OUTPUTS = (
     "regime", "stops_per_cycle", "turns_per_cycle", "stuck_fraction", "contact_peak_to_peak", "amplitude",

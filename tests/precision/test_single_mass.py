@@ -11,9 +11,10 @@ import pytest
 import frictionmap as fm
 from benchmarks.measures.own_entry import own_entry
 from frictionmap._kernels.compiler.packed import packed
-from frictionmap._kernels.general.problem import H, make_row, set_row
+from frictionmap._kernels.general.problem import H
 from frictionmap._kernels.general.record import make_record
 from frictionmap._kernels.general.return_map import make_return
+from frictionmap._kernels.general.row import make_row, set_row
 from frictionmap._kernels.general.single_mass import solve_single
 from frictionmap._kernels.general.single_tables import fits_row, make_single
 from frictionmap.general.problem import problem_of

@@ -8,11 +8,11 @@ import numpy as np
 import frictionmap as fm
 from frictionmap import regimes
 from frictionmap._kernels.compiler.packed import packed
+from frictionmap._kernels.general.counts import MOVED, STOPS
 from frictionmap._kernels.general.fill import Cells, Grid, fill_rows
-from frictionmap._kernels.general.follow import MOVED, STOPS
-from frictionmap._kernels.general.problem import set_row
 from frictionmap._kernels.general.record import NOTHING, RANGES
 from frictionmap._kernels.general.return_map import from_rest, steady_period
+from frictionmap._kernels.general.row import set_row
 from frictionmap._kernels.general.series import Friction
 from frictionmap._kernels.general.steady import REPEATS, find, make_workspace, measure
 from frictionmap.general.boundaries import friction_lines, rest_states

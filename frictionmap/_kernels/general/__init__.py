@@ -7,8 +7,11 @@ solution of its own.  Events are located on these series, with certainty.
 =============  =====================================================================================
 module         what is in it
 =============  =====================================================================================
-problem        a system over r, the constants of one r, the memory of a motion; series of the load
+problem        a system over r, the constants of one r, the memory of a motion: arrays and their rows
 crossings      values of a series, and its first zero, with certainty
+counts         counters of a motion
+laws           contact laws: phases, watched quantities, what follows an event
+row            the constants of one r and the memory of a motion, allocated and filled; series of the load
 series         series of one step: modes, forces, motion in the contacts
 pattern        which contacts slide and which are held after an event
 events         turns, stops and slowest instants of slides

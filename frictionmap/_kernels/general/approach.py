@@ -6,8 +6,9 @@ For mu > 1 several steady states may attract, and a motion may pass one by for s
 import math
 
 from ..compiler import kernel
+from .counts import SLIPS, STOPS, TURNS
 from .creep import find_rest, restore_friction
-from .follow import FOLLOWED, SLIPS, STOPS, TURNS
+from .follow import FOLLOWED
 from .orbits import NO_REPEAT, REPEATS, RETURNED, Steady, largest_multiplier, least_period
 from .recurrence import distance_back, distance_from_last, distance_from_orbit, go_back, put_orbit, take_orbit
 from .return_map import base_halves, go_round, motion_size, take_end

@@ -7,10 +7,9 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from ..logs import CAPACITY, LENGTH, USED, clear_log, is_stationary, make_log, mean_stops, mean_stuck, opened
-from .follow import (
+from .counts import (
     COUNT_ROWS,
     FIRST_SENSE,
-    FOLLOWED,
     LAST_SENSE,
     MOVED,
     RELEASE_ORDER,
@@ -21,8 +20,8 @@ from .follow import (
     STUCK,
     STUCK_ERROR,
     TURNS,
-    follow,
 )
+from .follow import FOLLOWED, follow
 from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES, begin_cycle, clear_record
 from .recurrence import keep
 from .return_map import put_state, take_state

@@ -7,7 +7,9 @@ ways.
 """
 
 from ..compiler import kernel
-from .follow import FOLLOWED, MOVED, STUCK
+from .counts import MOVED, STUCK
+from .follow import FOLLOWED
+from .laws.kinds import has_force
 from .orbits import DRIFTS, NO_REPEAT, REPEATS, drifts, newton
 from .problem import F, Q
 from .record import FORCES, HIGH, LOW, NOTHING, clear_record
@@ -83,7 +85,7 @@ def _hold(problem, friction, share, memory, kept):
                 kept[_WAY, j] = 1.0 if memory.counts[MOVED, j] == 1.0 else -1.0
             if kept[_MARK, j] == _LET_GO:
                 kept[_MARK, j] = _RESTS
-            if memory.senses[j] != 0 and problem.spring[j] != 0.0:
+            if memory.senses[j] != 0 and has_force(problem, j):
                 memory.start[F, j] = memory.senses[j] * kept[_KINETIC, j]
             memory.senses[j] = 0
             count += 1
@@ -102,7 +104,7 @@ def _displace(problem, memory, j, change):
             return
     for m in range(modes):
         memory.start[Q, m] -= problem.chi[j, m] * change / problem.squares[m]
-    if problem.spring[j] != 0.0:
+    if has_force(problem, j):
         memory.start[F, j] += change
 
 

@@ -11,8 +11,7 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..compiler.vectors import LANES, filled, load, magnitude, total
 from .crossings import first_zero, next_turn, slope_at, value_at
-from .problem import TERMS, WIDTH, H
-from .series import first_contact_row
+from .problem import TERMS, WIDTH, H, first_contact_row
 
 #: Turns, and stops, that are listed; further ones are counted.
 MOST = 256

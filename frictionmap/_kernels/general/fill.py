@@ -24,7 +24,9 @@ from ...regimes import (
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from ..extrapolation import CELLS, reaches, weight
-from .follow import MOVED, RELEASE_ORDER, REVERSALS, SLIPS, STOPS, STOPS_ERROR, STUCK, STUCK_ERROR, TURNS
+from .counts import MOVED, RELEASE_ORDER, REVERSALS, SLIPS, STOPS, STOPS_ERROR, STUCK, STUCK_ERROR, TURNS
+from .laws.contact import regime_of
+from .laws.kinds import has_force
 from .places import fill_needs, keep_held, place_after_start
 from .problem import padded
 from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES, varies
@@ -90,22 +92,6 @@ class Cells(NamedTuple):
 
 
 @kernel
-def _regime_of(problem, counts, j):
-    """Regime of one contact over the steady state."""
-    if counts[MOVED, j] == 0.0:
-        return PERMANENT_STICKING
-    if problem.spring[j] != 0.0:
-        if counts[STUCK, j] == 0.0 and problem.belt[j] != 0.0:
-            return ONE_WAY_SLIDING
-        return STICK_SLIP
-    if counts[STOPS, j] > 0.0:
-        return STICK_SLIP
-    if problem.belt[j] != 0.0 and counts[TURNS, j] == 0.0:
-        return ONE_WAY_SLIDING
-    return CONTINUOUS
-
-
-@kernel
 def _store_contacts(problem, out, m, i, b, counts, halves, record):
     """Store the numbers of every contact; return the regime of all.
 
@@ -123,7 +109,7 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
     least, most = CONTINUOUS + 2, PERMANENT_STICKING
     differs = False
     for j in range(contacts):
-        regime = _regime_of(problem, counts, j)
+        regime = regime_of(problem, counts, j)
         least, most = min(least, regime), max(most, regime)
         out.contact_regime[m, i, b, j] = regime
         out.stops[m, i, b, j] = counts[STOPS, j] / period
@@ -132,7 +118,7 @@ def _store_contacts(problem, out, m, i, b, counts, halves, record):
         out.stops_error[m, i, b, j] = counts[STOPS_ERROR, j]
         out.stuck_error[m, i, b, j] = counts[STUCK_ERROR, j]
         out.slips[m, i, b, j] = counts[SLIPS, j] / period
-        if problem.spring[j] != 0.0 and counts[STUCK, j] == 0.0:
+        if has_force(problem, j) and counts[STUCK, j] == 0.0:
             out.slips[m, i, b, j] = 1.0
         if counts[MOVED, j] == 0.0:
             out.stuck[m, i, b, j] = 1.0

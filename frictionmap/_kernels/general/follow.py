@@ -3,13 +3,18 @@
 import math
 
 from ..compiler import inner_kernel, kernel
-from ..compiler.vectors import LANES, load, store
-from .crossings import NONE, first_zero, slope_at, value_at
+from .counts import MOVED, RELEASE_ORDER, STUCK
+from .crossings import NONE, value_at
 from .glide import can_glide, glide
-from .pattern import FORCE, HOLDING, KINETIC, ORDER_MATTERS, PARTICIPATES, rest_springs, settle, stop_exactly
-from .problem import SECTION, TERMS, WIDTH, F, H, set_channels
+from .laws.contact import change_phase, count, jumps
+from .laws.coulomb import comes_to_rest, first_event, watched_slope
+from .laws.elastic import end_slips, rest_springs
+from .laws.kinds import has_constraint
+from .pattern import FORCE, HOLDING, KINETIC, ORDER_MATTERS, PARTICIPATES, settle, stop_exactly
+from .problem import SECTION, H, force_row, normal_row
 from .record import record_step
-from .series import advance, expand, factor_held, first_contact_row
+from .row import set_channels
+from .series import advance, expand, factor_held
 from .tangent import advance_tangent, hold_tangent, through_event, watched_row
 
 #: Phases of no length in a row after which the contacts chatter.
@@ -18,113 +23,24 @@ _MOST_IMMEDIATE = 200
 #: Events in an interval of the load, at most.
 _MOST_EVENTS = 1000
 
-#: Loads within this share of their limit are at it together, for contacts with mu = 1.
-_AT_LIMIT = 1e-11
-
-#: A velocity within this share of its size is zero together with one that is.
-_TOGETHER = 1e-11
-
-#: Rows of the scratch: the watched quantity; of every contact its sense and force before an event, the change
-#: of its force, and its normal load.  Further rows: see `record`, `events`.
-_WATCHED, _SENSE, _BEFORE, _CHANGE, _NORMAL = 0, 1, 3, 2, 4
-
-#: Rows of `counts`.
-STOPS, TURNS, STUCK, SLIPS, REVERSALS, LAST_SENSE = 0, 1, 2, 3, 4, 5
-MOVED = 6  # 0: at rest; 1, 2: slid up, down; 3: both
-NEAREST_STOP = 7  # largest share that friction has of the force that would hold a contact at a turn
-FIRST_SENSE = 8  # of the slips of an elastic contact; 0 before the first
-RELEASE_ORDER = 9  # 1 where releasing all overloaded contacts at once would leave it in another state
-STOPS_ERROR, STUCK_ERROR = 10, 11  # standard errors per period of the load, of averages; else 0
-COUNT_ROWS = 12
+#: Rows of the scratch after WATCHED: of every contact its sense and force before an event, the change of its
+#: force, and its normal load.  Further rows: see `record`, `events`.
+_SENSE, _BEFORE, _CHANGE, _NORMAL = 1, 3, 2, 4
 
 FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
 
 
 @inner_kernel
-def _watch(series, source, sign, shift, scratch):
-    """Copy sign times a series without its first terms, which are zero, to scratch[0]; return its zero."""
-    for k in range(0, TERMS, LANES):
-        store(load(series, source * WIDTH + k + shift) * sign, scratch, k)
-    return first_zero(scratch, _WATCHED)
-
-
-@inner_kernel
-def _within(series, force, nu, size, sign, shift, scratch):
-    """Copy the distance of a force from one side of its range to scratch[0]; return its first zero.
-
-    Parameters
-    ----------
-    series : series of the step
-    force, nu : rows of the force and of the normal load
-    size : static friction under constant normal load
-    sign : 1.0 or -1.0, the side
-    shift : number of leading terms that are zero by definition
-    scratch : its row 0 is filled
-    """
-    for k in range(0, TERMS, LANES):
-        at = k + shift
-        limit = load(series, nu * WIDTH + at) * size
-        store(limit - load(series, force * WIDTH + at) * sign, scratch, k)
-    if shift > 0 and scratch[_WATCHED, 0] < 0.0:
-        return 0.0  # at its limit, and about to exceed it
-    return first_zero(scratch, _WATCHED)
-
-
-@inner_kernel
 def _first_event(problem, friction, motion, end):
-    """Return (x, contact, side) of the first event in the present step up to `end`; x = NONE without one.
-
-    side: 0 for a velocity that vanishes, else the side of its range that a force reaches.
-    """
-    contacts = problem.spring.size
-    first = first_contact_row(problem)
+    """Return (x, contact, side) of the first event in the present step up to `end`; x = NONE without one."""
     found, contact, side = NONE, -1, 0
-    for j in range(contacts):
-        w, force, nu = first + contacts + j, first + 2 * contacts + j, first + 3 * contacts + j
-        if motion.sense[j] != 0:
-            x = _watch(motion.series, w, float(motion.sense[j]), motion.fresh[j], motion.scratch)
-            if x < found:
-                found, contact, side = x, j, 0
-            continue
-        if motion.idle[j]:
-            continue
-        for sign in (1, -1):
-            shift = max(0, sign * motion.fresh[j])
-            x = _within(motion.series, force, nu, friction.static[j], float(sign), shift, motion.scratch)
-            if x < found:
-                found, contact, side = x, j, sign
+    for j in range(motion.sense.size):
+        x, of = first_event(problem, friction, motion, j)
+        if x < found:
+            found, contact, side = x, j, of
     if found > end:
         return NONE, -1, 0
     return found, contact, side
-
-
-@kernel
-def _release_without_drop(problem, friction, motion, x, contact, side):
-    """Let a contact with mu = 1 slide on at the limit of its load, with all that are at theirs and go on."""
-    contacts = problem.spring.size
-    first = first_contact_row(problem)
-    for j in range(contacts):
-        if problem.spring[j] != 0.0 or motion.sense[j] != 0 or friction.static[j] > friction.kinetic[j]:
-            continue
-        force, nu = first + 2 * contacts + j, first + 3 * contacts + j
-        load = value_at(motion.series, force, x)
-        sign = side if j == contact else (1 if load > 0.0 else -1)
-        limit = friction.static[j] * value_at(motion.series, nu, x)
-        rate = sign * slope_at(motion.series, force, x) - friction.static[j] * slope_at(motion.series, nu, x)
-        if j == contact or (sign * load >= limit * (1.0 - _AT_LIMIT) and rate > 0.0):
-            motion.sense[j] = sign
-            motion.fresh[j] = 2
-
-
-@kernel
-def _comes_to_rest(motion, w, sense, x):
-    """Whether a velocity is zero at x up to rounding error, and on its way down."""
-    size = 0.0
-    for k in range(TERMS):
-        size += abs(motion.series[w, k])
-    if abs(value_at(motion.series, w, x)) > _TOGETHER * size:
-        return False
-    return sense * slope_at(motion.series, w, x) <= 0.0
 
 
 @kernel
@@ -133,51 +49,16 @@ def _arrives_instead(problem, motion, x, contact):
 
     Both have one velocity where they are side by side; what the rigid one does decides what follows.
     """
-    first_w = first_contact_row(problem) + problem.spring.size
     for j in range(motion.sense.size):
-        slides = problem.spring[j] == 0.0 and motion.sense[j] != 0
-        if slides and _comes_to_rest(motion, first_w + j, motion.sense[j], x):
+        slides = has_constraint(problem, j) and motion.sense[j] != 0
+        if slides and comes_to_rest(problem, motion, x, j):
             return j
     return contact
 
 
 @kernel
-def _end_slip(friction, motion, j):
-    """Let the slider of an elastic contact rest."""
-    motion.state[F, j] = motion.sense[j] * friction.kinetic[j]
-    motion.fresh[j] = 2 * motion.sense[j]
-    motion.sense[j] = 0
-
-
-@kernel
-def _end_slips(problem, friction, motion, x):
-    """End the slips of elastic contacts whose velocities are zero at x of the present step."""
-    contacts = problem.spring.size
-    first_w = first_contact_row(problem) + contacts
-    for j in range(contacts):
-        slips = problem.spring[j] != 0.0 and motion.sense[j] != 0
-        if slips and _comes_to_rest(motion, first_w + j, motion.sense[j], x):
-            _end_slip(friction, motion, j)
-
-
-@kernel
-def _after_elastic(problem, friction, motion, x, contact, side):
-    """Change the pattern of an elastic contact, and of all others that stop slipping with it.
-
-    Elements of a bank slip together, and so do contacts of a symmetric structure.
-    """
-    if side != 0:
-        motion.state[F, contact] = side * friction.kinetic[contact]
-        motion.sense[contact] = side
-        motion.fresh[contact] = max(0, side * motion.fresh[contact] - 1)  # the force's zeros less one of w
-        return
-    _end_slip(friction, motion, contact)
-    _end_slips(problem, friction, motion, x)
-
-
-@kernel
-def _change_pattern(problem, row, friction, tau, motion, box, x, contact, side):
-    """Change the pattern after an event; False if the contacts do not determine their forces.
+def _settle(problem, row, friction, tau, motion, box, x, contact, side):
+    """Change the pattern at an event at which forces jump; False if they are not determined.
 
     Parameters
     ----------
@@ -186,19 +67,13 @@ def _change_pattern(problem, row, friction, tau, motion, box, x, contact, side):
     motion, box : Motion, scratch of `settle`
     x, contact, side : the event, see `_first_event`
     """
-    if problem.spring[contact] != 0.0:
-        _after_elastic(problem, friction, motion, x, contact, side)
-        return True
-    if side != 0 and friction.static[contact] <= friction.kinetic[contact]:
-        _release_without_drop(problem, friction, motion, x, contact, side)
-        return True
     arrived, released = (contact, -1) if side == 0 else (-1, contact)
     if not settle(problem, row, friction, tau, motion, box, arrived, released):
         return False
     for j in range(motion.sense.size):
         if box[PARTICIPATES, j] != 0.0:
             motion.fresh[j] = 1 if motion.sense[j] != 0 else 0
-    _end_slips(problem, friction, motion, x)
+    end_slips(problem, friction, motion, x)
     return True
 
 
@@ -207,21 +82,9 @@ def _count(problem, motion, box, before, counts):
     """Count stops, turns, slips and reversals from the pattern before and after an event."""
     for j in range(motion.sense.size):
         old, new = int(before[j]), motion.sense[j]
-        if new == old:
-            continue
-        if problem.spring[j] != 0.0:
-            if new != 0:
-                counts[SLIPS, j] += 1.0
-                if counts[LAST_SENSE, j] * new < 0.0:
-                    counts[REVERSALS, j] += 1.0
-                counts[LAST_SENSE, j] = new
-                if counts[FIRST_SENSE, j] == 0.0:
-                    counts[FIRST_SENSE, j] = new
-        elif new == 0:
-            counts[STOPS, j] += 1.0
-        elif old != 0:
-            counts[TURNS, j] += 1.0
-            counts[NEAREST_STOP, j] = max(counts[NEAREST_STOP, j], box[KINETIC, j] / abs(box[HOLDING, j]))
+        if new != old:
+            share = box[KINETIC, j] / abs(box[HOLDING, j]) if old * new < 0 else 0.0
+            count(problem, counts, j, old, new, share)
 
 
 @inner_kernel
@@ -238,10 +101,8 @@ def _count_time(motion, counts, time):
 @kernel
 def _forces_at(problem, motion, x, out):
     """Friction forces at x of the present step."""
-    contacts = problem.spring.size
-    first = first_contact_row(problem)
-    for j in range(contacts):
-        out[j] = value_at(motion.series, first + 2 * contacts + j, x)
+    for j in range(motion.sense.size):
+        out[j] = value_at(motion.series, force_row(problem, j), x)
 
 
 @kernel
@@ -261,30 +122,25 @@ def _event(problem, row, friction, tau, motion, box, counts, event, derive):
     bool : False if the contacts do not determine their forces
     """
     x, contact, side = event
-    if side == 0 and problem.spring[contact] != 0.0:
+    if side == 0 and not has_constraint(problem, contact):
         contact = _arrives_instead(problem, motion, x, contact)
     contacts = problem.spring.size
-    first = first_contact_row(problem)
     series, scratch = motion.series, motion.scratch
     before, forces = scratch[_SENSE], scratch[_CHANGE]
     for j in range(contacts):
         before[j] = motion.sense[j]
     _forces_at(problem, motion, x, forces)
-    if side == 0:
-        slope = slope_at(series, first + contacts + contact, x)
-    else:
-        slope = friction.static[contact] * slope_at(series, first + 3 * contacts + contact, x)
-        slope -= side * slope_at(series, first + 2 * contacts + contact, x)
-    settles = problem.spring[contact] == 0.0 and (
-        side == 0 or friction.static[contact] > friction.kinetic[contact]
-    )
+    slope = watched_slope(problem, friction, motion, x, contact, side)
+    settles = jumps(problem, friction, contact, side)
     if derive:
         watched_row(problem, row, motion, contact, side, motion.watched)
     if settles and derive:
         for j in range(contacts):
             scratch[_BEFORE, j] = forces[j]
-            scratch[_NORMAL, j] = value_at(series, first + 3 * contacts + j, x)
-    if not _change_pattern(problem, row, friction, tau, motion, box, x, contact, side):
+            scratch[_NORMAL, j] = value_at(series, normal_row(problem, j), x)
+    if not settles:
+        change_phase(problem, friction, motion, x, contact, side)
+    elif not _settle(problem, row, friction, tau, motion, box, x, contact, side):
         return False
     rest_springs(problem, friction, motion, 1 if settles else 2)
     _count(problem, motion, box, before, counts)
@@ -295,7 +151,7 @@ def _event(problem, row, friction, tau, motion, box, counts, event, derive):
         return False
     if derive:
         for j in range(contacts):
-            if not settles or problem.spring[j] != 0.0:
+            if not settles or not has_constraint(problem, j):
                 forces[j] = 0.0
             elif motion.sense[j] != 0:
                 forces[j] = motion.sense[j] * friction.kinetic[j] * scratch[_NORMAL, j] - scratch[_BEFORE, j]

@@ -13,8 +13,9 @@ from ..compiler import inner_kernel, kernel
 from ..compiler.packed import packed
 from ..compiler.vectors import LANES, filled, least, load, mask_above, most, store
 from .crossings import fill_controls
-from .problem import SECTION, WIDTH, F, H, P, Q, state_size
-from .series import Friction, advance, expand, first_contact_row
+from .laws.kinds import has_force, state_size
+from .problem import SECTION, WIDTH, F, H, P, Q, first_contact_row
+from .series import Friction, advance, expand
 from .tangent import pattern_slot
 
 _ALL = 2**LANES - 1
@@ -26,7 +27,7 @@ def can_glide(problem, row):
     if 2 * row.intervals[0] * problem.push.shape[1] > row.loads.shape[0]:
         return False
     for j in range(problem.spring.size):
-        if problem.spring[j] != 0.0 and problem.belt[j] != 0.0:
+        if has_force(problem, j) and problem.belt[j] != 0.0:
             return False
         for d in range(problem.push.shape[1]):
             if problem.normal[j, d] != 0.0:

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel
+from .counts import MOVED, NEAREST_STOP, STOPS
 from .events import CONTACT, DOWN, FASTEST, LENGTH, MOST, SLOWEST, STOPS_LISTED, TIME, TURNS_LISTED, UP
-from .follow import MOVED, NEAREST_STOP, STOPS
 from .problem import padded
 
 #: Kinds of motion: no contact stops; some do; it grows without bound, so that no contact stops; not found.

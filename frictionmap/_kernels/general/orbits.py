@@ -6,8 +6,10 @@ from typing import NamedTuple
 from ..compiler import kernel
 from ..spectral_radius import spectral_radius
 from ..structure.newton import solve_linear
-from .follow import FOLLOWED, MOVED
-from .problem import SIZE, state_size
+from .counts import MOVED
+from .follow import FOLLOWED
+from .laws.kinds import state_size
+from .problem import SIZE
 from .return_map import fill_newton, go_round, keep_places, motion_size, return_distance, take_step
 
 #: Kinds of `Steady`; AVERAGED: the motion stops and starts without returning, see `course`.

@@ -7,9 +7,9 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from .creep import WITHOUT_LIMIT
-from .problem import set_row
 from .record import FORCES, HIGH, LOW, NOTHING
 from .return_map import from_rest
+from .row import set_row
 from .series import Friction
 from .steady import REPEATS, find, make_workspace, measure
 

@@ -11,8 +11,10 @@ import math
 import numpy as np
 
 from ..compiler import kernel
-from .problem import F, H, P, Q, set_channels
-from .series import factor_held, first_contact_row, solve_held
+from .laws.kinds import has_constraint, is_constrained, keeps_force
+from .problem import F, H, P, Q, first_contact_row
+from .row import set_channels
+from .series import factor_held, solve_held
 
 #: A slider with a velocity below this share of the velocities in it, on its way to zero, arrives with the
 #: contact whose arrival was found: in symmetric systems contacts arrive together.
@@ -246,16 +248,16 @@ def _take_part(problem, row, friction, tau, motion, box):
         box[KINETIC, j] = friction.kinetic[j] * nu
         box[STATIC, j] = friction.static[j] * nu
         box[PARTICIPATES, j] = 0.0
-        if problem.spring[j] == 0.0 and motion.sense[j] == 0:
+        if is_constrained(problem, motion, j):
             box[PARTICIPATES, j] = 1.0
         series[first + 2 * contacts + j, 0] = motion.sense[j] * box[KINETIC, j]
-        if problem.spring[j] != 0.0 and motion.sense[j] == 0:
+        if keeps_force(problem, motion, j):
             series[first + 2 * contacts + j, 0] = motion.state[F, j]
     _free_accelerations(problem, row, motion, box)
     for j in range(contacts):
         if (
             box[PARTICIPATES, j] == 0.0
-            and problem.spring[j] == 0.0
+            and has_constraint(problem, j)
             and _arrives_too(problem, row, motion, box, j)
         ):
             box[PARTICIPATES, j] = 1.0
@@ -297,49 +299,6 @@ def settle(problem, row, friction, tau, motion, box, arrived, released):
 
 
 @kernel
-def _ends_rest(problem, motion, j):
-    """Whether the contacts that keep both ends of a spring at rest are all held."""
-    tied = False
-    for i in range(motion.sense.size):
-        if problem.ties[j, i]:
-            tied = True
-            if motion.sense[i] != 0:
-                return False
-    return tied
-
-
-@kernel
-def rest_springs(problem, friction, motion, order):
-    """Bring springs to rest between ends that are at rest now, and let those go whose ends are not any more.
-
-    Between ends at rest the velocity is zero for as long as they rest, and the force constant: neither is
-    watched, because what is computed of them is rounding error.  A slip ends with the motion of the ends.
-    A force that is at its limit when an end lets go either slips on or falls; which of them is decided by the
-    first term of the velocity that is not zero.
-
-    Parameters
-    ----------
-    problem, friction : Problem, Friction
-    motion : Motion; senses, forces and `fresh` of the springs are set
-    order : number of leading terms of the velocities that are zero where ends begin to move: 1 after a jump
-        of a force, else 2
-    """
-    for j in range(motion.sense.size):
-        rests = _ends_rest(problem, motion, j)
-        limit = friction.kinetic[j]
-        if rests and motion.sense[j] != 0:
-            motion.state[F, j] = motion.sense[j] * limit
-            motion.sense[j] = 0
-        if rests:
-            motion.fresh[j] = 0
-        elif motion.idle[j] and abs(motion.state[F, j]) >= limit:  # beyond it by rounding error
-            sign = 1 if motion.state[F, j] > 0.0 else -1
-            motion.state[F, j] = sign * limit
-            motion.fresh[j] = sign * (1 + order)
-        motion.idle[j] = rests
-
-
-@kernel
 def begin(problem, row, friction, tau, motion, box):
     """Decide the pattern of a state at the start, from its velocities; elastic contacts begin at rest, their
     springs unloaded.
@@ -355,7 +314,7 @@ def begin(problem, row, friction, tau, motion, box):
         for d in range(channels):
             w -= problem.base[j, d] * motion.series[modes + d, 1]
         motion.fresh[j] = 0
-        motion.sense[j] = int(np.sign(w)) if problem.spring[j] == 0.0 else 0
+        motion.sense[j] = int(np.sign(w)) if has_constraint(problem, j) else 0
     if not settle(problem, row, friction, tau, motion, box, -1, -1):
         return False
     for j in range(contacts):

@@ -13,11 +13,13 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from ..structure.newton import solve_linear
+from .counts import MOVED
 from .creep import WITHOUT_LIMIT, keep_friction, restore_friction
-from .follow import FOLLOWED, MOVED
+from .follow import FOLLOWED
+from .laws.kinds import has_force, holding_stiffness
 from .orbits import NO_REPEAT, REPEATS, newton
 from .pattern import stop_exactly
-from .problem import SECTION, F, H, P, Q, R, padded, set_channels
+from .problem import SECTION, F, H, P, Q, R, padded
 from .record import FORCES, HIGH, LOW, NOTHING, clear_record, varies
 from .return_map import (
     begins_held,
@@ -29,6 +31,7 @@ from .return_map import (
     take_end,
     take_state,
 )
+from .row import set_channels
 from .series import factor_held, solve_held
 
 #: Margin that a contact at rest must have, over the force that the present difference from the steady state
@@ -131,8 +134,8 @@ def _place(problem, state, motion, j):
         place += problem.chi[j, m] * state[Q, m]
     for d in range(channels):
         place -= problem.base[j, d] * motion.series[modes + d, 0]
-    if problem.spring[j] != 0.0:
-        place -= state[F, j] / problem.spring[j]
+    if has_force(problem, j):
+        place -= state[F, j] / holding_stiffness(problem, j)
     return place
 
 
@@ -148,8 +151,8 @@ def fill_flexibility(problem, places):
             places.flexibility[a, b] = 0.0
             for m in range(modes):
                 places.flexibility[a, b] += problem.chi[a, m] * problem.chi[b, m] / problem.squares[m]
-            if a == b and problem.spring[a] != 0.0:
-                places.flexibility[a, a] += 1.0 / problem.spring[a]
+            if a == b and has_force(problem, a):
+                places.flexibility[a, a] += 1.0 / holding_stiffness(problem, a)
 
 
 @kernel
@@ -181,8 +184,8 @@ def _gain(problem, row, motion, places, j):
     of elastic contacts.
     """
     contacts, modes = problem.chi.shape
-    if problem.spring[j] != 0.0:
-        return math.sqrt(problem.spring[j] * row.numbers[R] ** 2 / row.numbers[H] ** 2)
+    if has_force(problem, j):
+        return math.sqrt(holding_stiffness(problem, j) * row.numbers[R] ** 2 / row.numbers[H] ** 2)
     right = motion.solve[contacts]
     for a in range(motion.held[contacts]):
         right[a] = 1.0 if motion.held[a] == j else 0.0
@@ -199,11 +202,13 @@ def _gain(problem, row, motion, places, j):
             rate += places.columns[other] * row.damping[other, m]
         square += rate * rate
     for other in range(contacts):
-        if problem.spring[other] != 0.0:
+        if has_force(problem, other):
             push = 0.0
             for m in range(modes):
                 push += places.columns[m] * row.reaction[other, m]
-            square += push * push * problem.spring[other] * row.numbers[R] ** 2 / row.numbers[H] ** 2
+            square += (
+                push * push * holding_stiffness(problem, other) * row.numbers[R] ** 2 / row.numbers[H] ** 2
+            )
     return math.sqrt(square)
 
 
@@ -267,9 +272,11 @@ def _difference(problem, row, memory, places):
         velocity = memory.start[P, m] - places.orbit[P, m]
         square += velocity * velocity + row.stiffness[m] * place * place
     for j in range(contacts):
-        if problem.spring[j] != 0.0:
+        if has_force(problem, j):
             force = memory.start[F, j] - places.orbit[F, j] - places.change[j]
-            square += force * force * row.numbers[H] ** 2 / (row.numbers[R] ** 2 * problem.spring[j])
+            square += (
+                force * force * row.numbers[H] ** 2 / (row.numbers[R] ** 2 * holding_stiffness(problem, j))
+            )
     return math.sqrt(square)
 
 
@@ -427,7 +434,7 @@ def _move(problem, memory, places):
     for m in range(problem.push.shape[0]):
         memory.start[Q, m] += places.moved[m]
     for j in range(places.rests.size):
-        if problem.spring[j] != 0.0:
+        if has_force(problem, j):
             memory.start[F, j] += places.change[j]
 
 

@@ -9,13 +9,12 @@ contact, or vary its normal load: nu = 1 + normal L(tau).
 Time inside a step is x = (tau - tau_0)/h in [0, 1], and velocities are p = dq/dx = h q'.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import entry, kernel
-from ..compiler.vectors import LANES, filled, load, store
+from ..compiler import inner_kernel, kernel
+from ..compiler.vectors import LANES
 
 #: Largest angle of the fastest part of the motion in one interval of the load [rad], a third of a turn ...
 TURN = 2.1
@@ -43,9 +42,8 @@ H, R, SIZE = 0, 1, 2
 #: Rows of a state: the modes q, their velocities p, and the forces f of elastic contacts.
 Q, P, F = 0, 1, 2
 
-#: Intervals of a period whose load is kept, and patterns whose derivatives are.
-_KEPT_INTERVALS = 512
-_KEPT_PATTERNS = 64
+#: Row of `Motion.scratch` for the quantity watched in a contact.
+WATCHED = 0
 
 
 class Problem(NamedTuple):
@@ -106,7 +104,7 @@ class Row(NamedTuple):
     chi: np.ndarray  # (N, M)
     reaction: np.ndarray  # (N, M) h^2/r^2 chi: acceleration of the modes per unit force
     mobility: np.ndarray  # (N, N) chi reaction^T: acceleration in the contacts per unit force
-    yields: np.ndarray  # (N,) weight of changes of the force of a spring, see `_set_yields`; 0: rigid
+    yields: np.ndarray  # (N,) weights of changes of forces that are coordinates, see `laws`; else 0
     cosines: np.ndarray  # (H, WIDTH) series of cos(n h x)
     sines: np.ndarray  # (H, WIDTH) series of sin(n h x)
     phasors: np.ndarray  # (2, D, H)
@@ -150,207 +148,25 @@ def padded(n):
     return LANES * ((n + LANES - 1) // LANES)
 
 
-@kernel
-def state_size(problem):
-    """Number of coordinates of a state: modes, their velocities, and forces of springs if there are any."""
-    contacts, modes = problem.chi.shape
-    for j in range(contacts):
-        if problem.spring[j] != 0.0:
-            return 2 * modes + contacts
-    return 2 * modes
+@inner_kernel
+def first_contact_row(problem):
+    """Row of the displacement z of the first contact; those of w, f and nu follow, N rows each."""
+    return problem.push.shape[0] + problem.push.shape[1]
 
 
-@kernel
-def _intervals(problem, i):
-    """Intervals of half a period at r[i]."""
-    return int(math.ceil(math.pi * problem.rates[i] / TURN))
+@inner_kernel
+def velocity_row(problem, j):
+    """Row of the velocity w of a contact."""
+    return first_contact_row(problem) + problem.spring.size + j
 
 
-@kernel
-def most_intervals(problem, limit):
-    """Largest number of intervals of a period over r, of those numbers that do not exceed a limit."""
-    most = 0
-    for i in range(problem.r.size):
-        count = 2 * _intervals(problem, i)
-        if count <= limit:
-            most = max(most, count)
-    return most
+@inner_kernel
+def force_row(problem, j):
+    """Row of the friction force f of a contact."""
+    return first_contact_row(problem) + 2 * problem.spring.size + j
 
 
-@entry
-def _make_parts(problem, kept, most):
-    """Allocate the parts of `kept` patterns and at most `most` intervals of a period."""
-    contacts, modes = problem.chi.shape
-    size = state_size(problem)
-    units, loads = kept * contacts * (size + contacts), kept * most
-    return Parts(
-        np.zeros((units, WIDTH)), np.zeros(units), np.zeros((kept * contacts, size)),
-        np.zeros(kept, np.int64), np.empty((loads * contacts, WIDTH)), np.empty(loads * contacts),
-        np.empty((loads, size)), np.zeros(loads, np.int64), np.zeros(contacts),
-        np.zeros((3, padded(max(modes, contacts)))),
-    )  # fmt: skip
-
-
-@entry
-def make_row(problem):
-    """Allocate the constants of one r."""
-    contacts, modes = problem.chi.shape
-    channels, harmonics = problem.push.shape[1], problem.orders.size
-    width, size = padded(modes), state_size(problem)
-    most = most_intervals(problem, _KEPT_INTERVALS)
-    kept = min(1 << contacts, _KEPT_PATTERNS)
-    return Row(
-        np.empty(3), np.zeros(1, np.int64), np.empty(modes), np.empty((modes, modes)),
-        np.zeros((TERMS, width)), np.zeros((TERMS, width)), np.zeros((modes, width)),
-        np.zeros((channels, width)), np.zeros((contacts, width)), np.zeros((contacts, width)),
-        np.empty((contacts, contacts)), np.zeros(contacts), np.zeros((harmonics, WIDTH)),
-        np.zeros((harmonics, WIDTH)),
-        np.empty((2, channels, harmonics)), np.empty((most * channels, WIDTH)), np.zeros(kept, np.int64),
-        np.empty((kept, LONG, modes, padded(size))), np.empty((kept, size, padded(size))),
-        np.empty((kept, contacts, padded(size))), _make_parts(problem, kept, most),
-    )  # fmt: skip
-
-
-@entry
-def make_motion(problem):
-    """Allocate the memory of one motion."""
-    contacts, modes = problem.chi.shape
-    size = state_size(problem)
-    width = padded(modes)
-    rows = padded(size)
-    return Motion(
-        np.zeros((3, padded(max(modes, contacts)))), np.zeros(contacts, np.int64),
-        np.zeros(contacts, np.int64), np.zeros(contacts, np.bool_),
-        np.zeros((modes + problem.push.shape[1] + 4 * contacts + 1, WIDTH)),
-        np.zeros((LONG, width)), np.zeros((contacts + 1, contacts)), np.zeros(contacts + 1, np.int64),
-        np.zeros((8, WIDTH)), np.zeros(1), np.zeros((size, rows)), np.zeros((2, size, rows)),
-        np.zeros((contacts, rows)), np.zeros(rows), np.zeros(size + contacts),
-    )  # fmt: skip
-
-
-@kernel
-def _set_waves(problem, row):
-    """Fill the series of cos(n h x) and sin(n h x)."""
-    h = row.numbers[H]
-    for n in range(problem.orders.size):
-        angle = problem.orders[n] * h
-        term = 1.0
-        for k in range(LONG):
-            if k % 2 == 0:
-                row.cosines[n, k] = term
-                term *= angle / (k + 1.0)
-            else:
-                row.sines[n, k] = term
-                term *= -angle / (k + 1.0)
-
-
-@kernel
-def _set_modes(problem, row, turn):
-    """Fill the constants of the modes; `turn` is h/r."""
-    contacts, modes = problem.chi.shape
-    for m in range(modes):
-        row.stiffness[m] = turn * turn * problem.squares[m]
-        for other in range(modes):
-            row.damping[m, other] = turn * problem.damping[m, other]
-            row.coupling[other, m] = row.damping[m, other]
-        own = 0.0 if problem.coupled else row.damping[m, m]
-        for k in range(TERMS):
-            inverse = 1.0 / ((k + 1.0) * (k + 2.0))
-            row.velocity_term[k, m] = -own * (k + 1.0) * inverse
-            row.place_term[k, m] = -row.stiffness[m] * inverse
-        for d in range(problem.push.shape[1]):
-            row.push[d, m] = turn * turn * problem.push[m, d]
-        for j in range(contacts):
-            row.chi[j, m] = problem.chi[j, m]
-            row.reaction[j, m] = turn * turn * problem.chi[j, m]
-
-
-@kernel
-def _set_yields(problem, row):
-    """Fill the weights of changes of the forces of springs beside changes of the modes.
-
-    The weight is the displacement of a mode that moves the contact as far as the spring and the structure
-    under this force.
-    """
-    square = row.numbers[R] * row.numbers[R]
-    for j in range(problem.spring.size):
-        flexibility, share = 0.0, 0.0
-        for m in range(problem.squares.size):
-            flexibility += problem.chi[j, m] * problem.chi[j, m] / (problem.squares[m] + square)
-            share = max(share, abs(problem.chi[j, m]))
-        row.yields[j] = 0.0
-        if problem.spring[j] != 0.0 and share > 0.0:
-            row.yields[j] = flexibility / ((1.0 + problem.spring[j] * flexibility) * share)
-
-
-@kernel
-def _fill_channels(problem, row, tau, series, first):
-    """Fill the series of the channels, which begin at the phase tau, in `series` from its row `first`."""
-    channels = problem.push.shape[1]
-    for d in range(channels):
-        for k in range(0, WIDTH, LANES):
-            store(filled(0.0), series, (first + d) * WIDTH + k)
-    for n in range(problem.orders.size):
-        angle = problem.orders[n] * tau
-        c, s = math.cos(angle), math.sin(angle)
-        for d in range(channels):
-            even = row.phasors[0, d, n] * c + row.phasors[1, d, n] * s
-            odd = row.phasors[1, d, n] * c - row.phasors[0, d, n] * s
-            if even == 0.0 and odd == 0.0:
-                continue
-            for k in range(0, WIDTH, LANES):
-                at = (first + d) * WIDTH + k
-                wave = load(row.cosines, n * WIDTH + k) * even + load(row.sines, n * WIDTH + k) * odd
-                store(load(series, at) + wave, series, at)
-
-
-@kernel
-def set_row(problem, i, row):
-    """Fill the constants of r[i]."""
-    row.intervals[0] = _intervals(problem, i)
-    h = math.pi / row.intervals[0]
-    row.numbers[H], row.numbers[R], row.numbers[SIZE] = h, problem.r[i], problem.sizes[i]
-    contacts, modes = problem.chi.shape
-    _set_modes(problem, row, h / problem.r[i])
-    for a in range(contacts):
-        for b in range(contacts):
-            row.mobility[a, b] = 0.0
-            for m in range(modes):
-                row.mobility[a, b] += problem.chi[a, m] * row.reaction[b, m]
-    _set_yields(problem, row)
-    _set_waves(problem, row)
-    for part in range(2):
-        for d in range(problem.push.shape[1]):
-            for n in range(problem.orders.size):
-                row.phasors[part, d, n] = problem.phasors[i, part, d, n]
-    for k in range(row.patterns.size):
-        row.patterns[k] = 0
-        row.parts.known[k] = 0
-    for k in range(row.parts.loads_known.size):
-        row.parts.loads_known[k] = 0
-    channels = problem.push.shape[1]
-    if 2 * row.intervals[0] * channels <= row.loads.shape[0]:
-        for k in range(2 * row.intervals[0]):
-            _fill_channels(problem, row, SECTION + k * h, row.loads, k * channels)
-
-
-@kernel
-def set_channels(problem, row, tau, interval, motion):
-    """Put the series of the channels, which begin at the phase tau, after those of the modes in the motion.
-
-    Parameters
-    ----------
-    problem, row : Problem, Row
-    tau : phase of the load
-    interval : of the row, if tau is its beginning; else -1
-    motion : Motion
-    """
-    if motion.clock[0] == tau:
-        return
-    motion.clock[0] = tau
-    modes, channels = problem.push.shape
-    if interval < 0 or 2 * row.intervals[0] * channels > row.loads.shape[0]:
-        _fill_channels(problem, row, tau, motion.series, modes)
-        return
-    for k in range(0, channels * WIDTH, LANES):
-        store(load(row.loads, interval * channels * WIDTH + k), motion.series, modes * WIDTH + k)
+@inner_kernel
+def normal_row(problem, j):
+    """Row of the normal load nu of a contact."""
+    return first_contact_row(problem) + 3 * problem.spring.size + j

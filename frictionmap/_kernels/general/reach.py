@@ -10,8 +10,10 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from ..structure.newton import solve_linear
+from .counts import STUCK
 from .events import clear_events, close_lists
-from .follow import FOLLOWED, STUCK
+from .follow import FOLLOWED
+from .laws.kinds import state_size
 from .neighbours import (
     GROWS,
     HAS_STOPS,
@@ -26,9 +28,10 @@ from .neighbours import (
     make_motions,
 )
 from .orbits import MEASURED, REPEATS, newton
-from .problem import SECTION, H, P, set_channels, state_size
+from .problem import SECTION, H, P
 from .record import EVENTS, NOTHING, Record, make_list
 from .return_map import base_halves, fill_newton, from_rest, go_round, motion_size, return_distance, take_step
+from .row import set_channels
 from .series import Friction
 from .steady import Workspace, find, make_workspace
 

@@ -8,8 +8,9 @@ from ..compiler import entry, kernel
 from ..compiler.vectors import LANES, filled, load, magnitude, store, total
 from .crossings import first_zero, next_turn, value_at
 from .events import MOST, Events, list_step, make_events
-from .problem import LONG, SIZE, TERMS, WIDTH, H
-from .series import first_contact_row
+from .laws.contact import moves_one_way
+from .laws.kinds import has_force
+from .problem import LONG, SIZE, TERMS, WIDTH, H, first_contact_row
 
 NOTHING, RANGES, STEPS, FORCES, EVENTS = 0, 1, 2, 3, 4
 
@@ -238,7 +239,7 @@ def _keep_works(problem, row, motion, end, record, first):
                 record.works[OF_FRICTION, j] += _integral_of_product(series, force, first + contacts + j, end)
             else:
                 record.works[OF_FRICTION, j] += series[force, 0] * way
-        elif problem.spring[j] != 0.0:
+        elif has_force(problem, j):
             _keep_slip(record, j)
         if belt != 0.0:
             record.works[OF_WALL, j] -= _integral(series, force, end) * belt
@@ -297,7 +298,7 @@ def record_step(problem, row, motion, end, record):
     first = first_contact_row(problem)
     series, scratch = motion.series, motion.scratch
     for j in range(contacts):
-        if problem.spring[j] == 0.0 and problem.belt[j] == 0.0:  # at rest, or on its way in one direction
+        if moves_one_way(problem, j):
             include(record.ranges, j, series[first + j, 0])
             include(record.ranges, j, value_at(series, first + j, end))
         else:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from ..long_periods import LONGEST_RECURRENCE, RETURNED_AFTER_LONG
-from .follow import COUNT_ROWS
+from .counts import COUNT_ROWS
 from .problem import SIZE, padded
 from .return_map import base_halves, copy_motion, largest_difference, steady_period
 

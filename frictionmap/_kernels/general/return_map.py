@@ -6,18 +6,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel
-from .follow import (
-    COUNT_ROWS,
-    FIRST_SENSE,
-    FOLLOWED,
-    LAST_SENSE,
-    MOVED,
-    REVERSALS,
-    follow,
-    follow_to_section,
-)
+from .counts import COUNT_ROWS, FIRST_SENSE, LAST_SENSE, MOVED, REVERSALS
+from .follow import FOLLOWED, follow, follow_to_section
+from .laws.kinds import has_force, holding_stiffness, keeps_force, state_size
 from .pattern import BOX_ROWS, begin
-from .problem import SIZE, F, H, P, Q, padded, state_size
+from .problem import SIZE, F, H, P, Q, padded
 from .record import NOTHING
 from .series import factor_held, solve_held
 from .tangent import identity
@@ -212,8 +205,8 @@ def round_state(problem, friction, memory, bits):
         for i in range(memory.start.shape[1]):
             memory.start[part, i] = rounded(memory.start[part, i], step)
     for j in range(memory.senses.size):
-        if memory.senses[j] == 0:
-            force = rounded(memory.start[F, j], raster(problem.spring[j] * size, bits))
+        if memory.senses[j] == 0 and has_force(problem, j):
+            force = rounded(memory.start[F, j], raster(holding_stiffness(problem, j) * size, bits))
             memory.start[F, j] = min(max(force, -friction.kinetic[j]), friction.kinetic[j])
 
 
@@ -299,13 +292,13 @@ def keep_places(problem, row, motion, memory, matrix, weight):
         for m in range(modes):
             matrix[m, b] += weight * motion.watched[m]
         for j in range(contacts):
-            if problem.spring[j] != 0.0 and motion.sense[j] == 0:
+            if keeps_force(problem, motion, j):
                 left = problem.chi[j, b]
                 for m in range(modes):
                     left -= problem.chi[j, m] * motion.watched[m]
-                matrix[2 * modes + j, b] -= weight * problem.spring[j] * left
+                matrix[2 * modes + j, b] -= weight * holding_stiffness(problem, j) * left
     for j in range(contacts):
-        if problem.spring[j] != 0.0 and motion.sense[j] == 0:
+        if keeps_force(problem, motion, j):
             matrix[2 * modes + j, 2 * modes + j] += weight
 
 
@@ -324,7 +317,7 @@ def fill_newton(problem, row, halves, motion, memory):
             memory.matrix[a, b] = -sign * motion.tangent[a, b]
         memory.matrix[a, a] += 1.0
     for j in range(contacts):
-        if size > 2 * modes and problem.spring[j] == 0.0:  # a rigid contact's force is no coordinate
+        if size > 2 * modes and not has_force(problem, j):  # its force is no coordinate
             for a in range(size):
                 memory.matrix[2 * modes + j, a] = 0.0
                 memory.matrix[a, 2 * modes + j] = 0.0
@@ -349,7 +342,7 @@ def take_step(problem, row, memory):
         memory.start[P, m] += memory.right[modes + m]
         step = max(step, abs(memory.right[m]), abs(memory.right[modes + m]))
     for j in range(memory.senses.size):
-        if problem.spring[j] != 0.0:
+        if has_force(problem, j):
             memory.start[F, j] += memory.right[2 * modes + j]
             if memory.senses[j] == 0:
                 step = max(step, row.yields[j] * abs(memory.right[2 * modes + j]))

@@ -12,7 +12,9 @@ import numpy as np
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store, total
 from .crossings import value_at
-from .problem import INVERSE, LONG, NEXT, TERMS, WIDTH, F, H, set_channels
+from .laws.kinds import holding_stiffness, is_constrained, is_spring, keeps_force
+from .problem import INVERSE, LONG, NEXT, TERMS, WIDTH, F, H, first_contact_row
+from .row import set_channels
 
 
 class Friction(NamedTuple):
@@ -22,19 +24,13 @@ class Friction(NamedTuple):
     static: np.ndarray  # (N,) mu_i beta_i
 
 
-@inner_kernel
-def first_contact_row(problem):
-    """Row of the displacement z of the first contact; those of w, f and nu follow, N rows each."""
-    return problem.push.shape[0] + problem.push.shape[1]
-
-
 @kernel
 def factor_held(problem, row, motion):
-    """List the rigid contacts that are held, and factor their mobility (Cholesky); False if singular."""
+    """List the contacts that constraints hold, and factor their mobility (Cholesky); False if singular."""
     contacts = motion.sense.size
     count = 0
     for j in range(contacts):
-        if motion.sense[j] == 0 and problem.spring[j] == 0.0:
+        if is_constrained(problem, motion, j):
             motion.held[count] = j
             count += 1
     motion.held[contacts] = count
@@ -86,7 +82,7 @@ def _normal_loads(problem, series, first):
 
 @inner_kernel
 def _known_forces(problem, friction, motion, first):
-    """Fill the forces of sliding contacts; those of held ones begin at 0, of elastic ones at their force."""
+    """Fill the forces of sliding contacts; those of held ones begin at 0, or at the force that they keep."""
     contacts = problem.spring.size
     series = motion.series
     for j in range(contacts):
@@ -94,21 +90,18 @@ def _known_forces(problem, friction, motion, first):
         size = motion.sense[j] * friction.kinetic[j]
         for k in range(0, WIDTH, LANES):
             store(load(series, nu + k) * size, series, force + k)
-        if motion.sense[j] == 0 and problem.spring[j] != 0.0:
+        if keeps_force(problem, motion, j):
             series[first + 2 * contacts + j, 0] = motion.state[F, j]
 
 
 @inner_kernel
-def _elastic_forces(problem, row, k, motion, first):
-    """Fill term k > 0 of the forces of elastic contacts that are held, from that of the modes.
-
-    Those of springs between ends at rest are constant: their terms stay zero.
-    """
+def _spring_forces(problem, row, k, motion, first):
+    """Fill term k > 0 of the forces of contacts that act as springs, from that of the modes."""
     modes, channels = problem.push.shape
     contacts = problem.spring.size
     width = row.chi.shape[1]
     for j in range(contacts):
-        if motion.sense[j] == 0 and problem.spring[j] != 0.0 and not motion.idle[j]:
+        if is_spring(problem, motion, j):
             z = 0.0
             for m in range(0, width, LANES):
                 z += total(load(row.chi, j * width + m) * load(motion.moves, k * width + m))
@@ -116,7 +109,7 @@ def _elastic_forces(problem, row, k, motion, first):
                 z -= problem.base[j, d] * motion.series[modes + d, k]
             if k == 1:
                 z -= row.numbers[H] * problem.belt[j]
-            motion.series[first + 2 * contacts + j, k] = problem.spring[j] * z
+            motion.series[first + 2 * contacts + j, k] = holding_stiffness(problem, j) * z
 
 
 @inner_kernel
@@ -257,7 +250,7 @@ def expand(problem, row, friction, tau, interval, motion, whole):
     else:
         for k in range(TERMS):
             if k > 0:
-                _elastic_forces(problem, row, k, motion, first)
+                _spring_forces(problem, row, k, motion, first)
             _free_term(problem, row, k, motion, first)
             if motion.held[contacts] > 0:
                 _hold_term(problem, row, k, motion, first)
@@ -285,5 +278,5 @@ def advance(problem, row, x, motion):
         store(even + odd * x, motion.state, m)
         store(velocity, motion.state, motion.state.shape[1] + m)
     for j in range(contacts):
-        if problem.spring[j] != 0.0 and motion.sense[j] == 0:
+        if keeps_force(problem, motion, j):
             motion.state[F, j] = value_at(motion.series, first + 2 * contacts + j, x)

@@ -10,8 +10,8 @@ import math
 
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, LEADING, filled, least, load, mask_above, most, store
+from .counts import COUNT_ROWS, MOVED, NEAREST_STOP, STOPS, STUCK, TURNS
 from .crossings import NONE, approach, slope_at, value_at
-from .follow import COUNT_ROWS, MOVED, NEAREST_STOP, STOPS, STUCK, TURNS
 from .orbits import LARGEST, MEASURED, radius_of_two
 from .problem import SIZE, TERMS, WIDTH, H, P, Q
 from .record import LEAST_SLIP, OF_FRICTION, clear_record, include, mirror

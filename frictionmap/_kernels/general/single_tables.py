@@ -16,7 +16,9 @@ import numpy as np
 from ..compiler import entry, inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store
 from .crossings import fill_controls, value_at
-from .problem import LONG, SECTION, TERMS, WIDTH, H, R, most_intervals
+from .laws.kinds import RIGID, kind_of
+from .problem import LONG, SECTION, TERMS, WIDTH, H, R
+from .row import most_intervals
 
 #: Rows of `Single.series`: displacement and velocity of the motions that all intervals share ...
 PLACE, PLACE_RATE, PUSH, PUSH_RATE, YIELD, YIELD_RATE = 0, 1, 2, 3, 4, 5
@@ -80,7 +82,7 @@ def is_single(problem, masses):
     masses : number of masses whose displacements are wanted; if the wall moves, their extremes are others
     """
     contacts, modes = problem.chi.shape
-    if contacts != 1 or modes != 1 or problem.spring[0] != 0.0 or problem.belt[0] != 0.0:
+    if contacts != 1 or modes != 1 or kind_of(problem, 0) != RIGID or problem.belt[0] != 0.0:
         return False
     for d in range(problem.push.shape[1]):
         if problem.normal[0, d] != 0.0 or (masses > 0 and problem.base[0, d] != 0.0):

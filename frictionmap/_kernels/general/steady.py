@@ -47,7 +47,7 @@ from .places import (
     settle_places,
     stop_contacts,
 )
-from .problem import H, Motion, Row, make_motion, make_row, set_row
+from .problem import H, Motion, Row
 from .record import NOTHING, RANGES, STEPS, Record, clear_record, join_slips, make_record, mirror
 from .recurrence import (
     Ring,
@@ -72,6 +72,7 @@ from .return_map import (
     steady_period,
     take_end,
 )
+from .row import make_motion, make_row, set_row
 from .single_mass import solve_single
 from .single_tables import Single, fits_row, forget_row, make_single
 

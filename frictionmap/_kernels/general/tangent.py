@@ -8,7 +8,8 @@ before it.
 
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store
-from .problem import INVERSE, LONG, TERMS, state_size
+from .laws.kinds import has_force, holding_stiffness, is_spring, keeps_force, state_size
+from .problem import INVERSE, LONG, TERMS
 
 
 @kernel
@@ -43,20 +44,21 @@ def _solve_columns(motion, right):
 
 
 @inner_kernel
-def _elastic_term(problem, row, motion, k, first):
-    """Take the derivatives of the forces of elastic contacts that are held from term k + 2."""
+def _spring_term(problem, row, motion, k, first):
+    """Take the derivatives of the forces of contacts that act as springs from term k + 2."""
     modes = problem.push.shape[0]
     columns, size = row.columns, motion.tangent.shape[1]
     inverse = INVERSE[k]
     for j in range(problem.spring.size):
-        if problem.spring[j] == 0.0 or motion.sense[j] != 0 or motion.idle[j]:
+        if not is_spring(problem, motion, j):
             continue
+        stiffness = holding_stiffness(problem, j)
         for i in range(0, size, LANES):
             force = filled(0.0)
             for m in range(modes):
                 if k > 0:
                     place = load(columns, first + (k * modes + m) * size + i)
-                    force = force + place * (problem.spring[j] * problem.chi[j, m])
+                    force = force + place * (stiffness * problem.chi[j, m])
             for m in range(modes):
                 at = first + ((k + 2) * modes + m) * size + i
                 store(load(columns, at) - force * (inverse * row.reaction[j, m]), columns, at)
@@ -64,10 +66,10 @@ def _elastic_term(problem, row, motion, k, first):
 
 @inner_kernel
 def _own_force(problem, row, motion, slot):
-    """Take from term 2 the forces that elastic contacts begin with, which are coordinates of the state."""
+    """Take from term 2 the forces that contacts begin with and keep, which are coordinates of the state."""
     modes = problem.push.shape[0]
     for j in range(problem.spring.size):
-        if problem.spring[j] != 0.0 and motion.sense[j] == 0:
+        if keeps_force(problem, motion, j):
             for m in range(modes):
                 row.columns[slot, 2, m, 2 * modes + j] -= INVERSE[0] * row.reaction[j, m]
 
@@ -143,10 +145,10 @@ def _onward(problem, row, motion, slot, x, table, at):
     for j in range(contacts):
         for i in range(size):
             force = 1.0 if i == 2 * modes + j else 0.0
-            if problem.spring[j] != 0.0 and motion.sense[j] == 0 and not motion.idle[j]:
+            if is_spring(problem, motion, j):
                 for m in range(modes):
                     moved = table[at, m, i] - (1.0 if i == m else 0.0)
-                    force += problem.spring[j] * problem.chi[j, m] * moved
+                    force += holding_stiffness(problem, j) * problem.chi[j, m] * moved
             table[at, 2 * modes + j, i] = force
 
 
@@ -164,7 +166,7 @@ def _fill_pattern(problem, row, motion, slot):
         _free_columns(problem, row, motion, k, first)
         if k == 0:
             _own_force(problem, row, motion, slot)
-        _elastic_term(problem, row, motion, k, first)
+        _spring_term(problem, row, motion, k, first)
         if motion.held[contacts] > 0:
             _holding_columns(problem, row, motion, k, first)
         if k == 0:
@@ -233,7 +235,7 @@ def watched_row(problem, row, motion, j, sign, out):
         if sign == 0:
             for m in range(modes):
                 part = part + load(motion.tangent, (modes + m) * size + i) * problem.chi[j, m]
-        elif problem.spring[j] != 0.0:
+        elif has_force(problem, j):
             part = part - load(motion.tangent, (2 * modes + j) * size + i) * float(sign)
         else:
             for b in range(state_size(problem)):
@@ -261,7 +263,7 @@ def through_event(problem, row, motion, drop, watched, slope):
                 for i in range(0, size, LANES):
                     at = (modes + m) * size + i
                     store(load(motion.tangent, at) + load(watched, i) * factor, motion.tangent, at)
-        if problem.spring[j] != 0.0 and motion.sense[j] != 0:
+        if has_force(problem, j) and motion.sense[j] != 0:
             for i in range(size):
                 motion.tangent[2 * modes + j, i] = 0.0
 

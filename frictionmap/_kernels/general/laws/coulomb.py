@@ -1,4 +1,4 @@
-"""Coulomb friction: a slide ends where its velocity is zero, a held contact at a side of its range of forces."""
+"""Coulomb friction: a slide lasts to the zero of its velocity, a stop to a side of the range of forces."""
 
 from ...compiler import inner_kernel, kernel
 from ...compiler.vectors import LANES, load, store

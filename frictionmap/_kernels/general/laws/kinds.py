@@ -25,7 +25,7 @@ def is_constrained(problem, motion, j):
 
 @inner_kernel
 def has_force(problem, j):
-    """Whether the force of a contact is a coordinate of the state; while it slides, its friction is its force."""
+    """Whether the force of a contact is a coordinate of the state; in a slide it is the friction."""
     return kind_of(problem, j) == ELASTIC
 
 

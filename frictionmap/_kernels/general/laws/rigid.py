@@ -1,4 +1,4 @@
-"""A rigid contact: a constraint holds it, and its force jumps where a slide ends and where mu > 1 releases it.
+"""A rigid contact: a constraint holds it; its force jumps where a slide ends, and at a release for mu > 1.
 
 What follows a jump is decided for all contacts at once, see `pattern`.
 """

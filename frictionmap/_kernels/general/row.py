@@ -1,0 +1,194 @@
+"""The constants of one r, and the memory of a motion: allocated, filled; series of the load."""
+
+import math
+
+import numpy as np
+
+from ..compiler import entry, kernel
+from ..compiler.vectors import LANES, filled, load, store
+from .laws.contact import force_weight
+from .laws.kinds import state_size
+from .problem import LONG, SECTION, SIZE, TERMS, TURN, WIDTH, H, Motion, Parts, R, Row, padded
+
+#: Intervals of a period whose load is kept, and patterns whose derivatives are.
+_KEPT_INTERVALS = 512
+_KEPT_PATTERNS = 64
+
+
+@kernel
+def _intervals(problem, i):
+    """Intervals of half a period at r[i]."""
+    return int(math.ceil(math.pi * problem.rates[i] / TURN))
+
+
+@kernel
+def most_intervals(problem, limit):
+    """Largest number of intervals of a period over r, of those numbers that do not exceed a limit."""
+    most = 0
+    for i in range(problem.r.size):
+        count = 2 * _intervals(problem, i)
+        if count <= limit:
+            most = max(most, count)
+    return most
+
+
+@entry
+def _make_parts(problem, kept, most):
+    """Allocate the parts of `kept` patterns and at most `most` intervals of a period."""
+    contacts, modes = problem.chi.shape
+    size = state_size(problem)
+    units, loads = kept * contacts * (size + contacts), kept * most
+    return Parts(
+        np.zeros((units, WIDTH)), np.zeros(units), np.zeros((kept * contacts, size)),
+        np.zeros(kept, np.int64), np.empty((loads * contacts, WIDTH)), np.empty(loads * contacts),
+        np.empty((loads, size)), np.zeros(loads, np.int64), np.zeros(contacts),
+        np.zeros((3, padded(max(modes, contacts)))),
+    )  # fmt: skip
+
+
+@entry
+def make_row(problem):
+    """Allocate the constants of one r."""
+    contacts, modes = problem.chi.shape
+    channels, harmonics = problem.push.shape[1], problem.orders.size
+    width, size = padded(modes), state_size(problem)
+    most = most_intervals(problem, _KEPT_INTERVALS)
+    kept = min(1 << contacts, _KEPT_PATTERNS)
+    return Row(
+        np.empty(3), np.zeros(1, np.int64), np.empty(modes), np.empty((modes, modes)),
+        np.zeros((TERMS, width)), np.zeros((TERMS, width)), np.zeros((modes, width)),
+        np.zeros((channels, width)), np.zeros((contacts, width)), np.zeros((contacts, width)),
+        np.empty((contacts, contacts)), np.zeros(contacts), np.zeros((harmonics, WIDTH)),
+        np.zeros((harmonics, WIDTH)),
+        np.empty((2, channels, harmonics)), np.empty((most * channels, WIDTH)), np.zeros(kept, np.int64),
+        np.empty((kept, LONG, modes, padded(size))), np.empty((kept, size, padded(size))),
+        np.empty((kept, contacts, padded(size))), _make_parts(problem, kept, most),
+    )  # fmt: skip
+
+
+@entry
+def make_motion(problem):
+    """Allocate the memory of one motion."""
+    contacts, modes = problem.chi.shape
+    size = state_size(problem)
+    width = padded(modes)
+    rows = padded(size)
+    return Motion(
+        np.zeros((3, padded(max(modes, contacts)))), np.zeros(contacts, np.int64),
+        np.zeros(contacts, np.int64), np.zeros(contacts, np.bool_),
+        np.zeros((modes + problem.push.shape[1] + 4 * contacts + 1, WIDTH)),
+        np.zeros((LONG, width)), np.zeros((contacts + 1, contacts)), np.zeros(contacts + 1, np.int64),
+        np.zeros((8, WIDTH)), np.zeros(1), np.zeros((size, rows)), np.zeros((2, size, rows)),
+        np.zeros((contacts, rows)), np.zeros(rows), np.zeros(size + contacts),
+    )  # fmt: skip
+
+
+@kernel
+def _set_waves(problem, row):
+    """Fill the series of cos(n h x) and sin(n h x)."""
+    h = row.numbers[H]
+    for n in range(problem.orders.size):
+        angle = problem.orders[n] * h
+        term = 1.0
+        for k in range(LONG):
+            if k % 2 == 0:
+                row.cosines[n, k] = term
+                term *= angle / (k + 1.0)
+            else:
+                row.sines[n, k] = term
+                term *= -angle / (k + 1.0)
+
+
+@kernel
+def _set_modes(problem, row, turn):
+    """Fill the constants of the modes; `turn` is h/r."""
+    contacts, modes = problem.chi.shape
+    for m in range(modes):
+        row.stiffness[m] = turn * turn * problem.squares[m]
+        for other in range(modes):
+            row.damping[m, other] = turn * problem.damping[m, other]
+            row.coupling[other, m] = row.damping[m, other]
+        own = 0.0 if problem.coupled else row.damping[m, m]
+        for k in range(TERMS):
+            inverse = 1.0 / ((k + 1.0) * (k + 2.0))
+            row.velocity_term[k, m] = -own * (k + 1.0) * inverse
+            row.place_term[k, m] = -row.stiffness[m] * inverse
+        for d in range(problem.push.shape[1]):
+            row.push[d, m] = turn * turn * problem.push[m, d]
+        for j in range(contacts):
+            row.chi[j, m] = problem.chi[j, m]
+            row.reaction[j, m] = turn * turn * problem.chi[j, m]
+
+
+@kernel
+def _fill_channels(problem, row, tau, series, first):
+    """Fill the series of the channels, which begin at the phase tau, in `series` from its row `first`."""
+    channels = problem.push.shape[1]
+    for d in range(channels):
+        for k in range(0, WIDTH, LANES):
+            store(filled(0.0), series, (first + d) * WIDTH + k)
+    for n in range(problem.orders.size):
+        angle = problem.orders[n] * tau
+        c, s = math.cos(angle), math.sin(angle)
+        for d in range(channels):
+            even = row.phasors[0, d, n] * c + row.phasors[1, d, n] * s
+            odd = row.phasors[1, d, n] * c - row.phasors[0, d, n] * s
+            if even == 0.0 and odd == 0.0:
+                continue
+            for k in range(0, WIDTH, LANES):
+                at = (first + d) * WIDTH + k
+                wave = load(row.cosines, n * WIDTH + k) * even + load(row.sines, n * WIDTH + k) * odd
+                store(load(series, at) + wave, series, at)
+
+
+@kernel
+def set_row(problem, i, row):
+    """Fill the constants of r[i]."""
+    row.intervals[0] = _intervals(problem, i)
+    h = math.pi / row.intervals[0]
+    row.numbers[H], row.numbers[R], row.numbers[SIZE] = h, problem.r[i], problem.sizes[i]
+    contacts, modes = problem.chi.shape
+    _set_modes(problem, row, h / problem.r[i])
+    for a in range(contacts):
+        for b in range(contacts):
+            row.mobility[a, b] = 0.0
+            for m in range(modes):
+                row.mobility[a, b] += problem.chi[a, m] * row.reaction[b, m]
+    for j in range(contacts):
+        row.yields[j] = force_weight(problem, row, j)
+    _set_waves(problem, row)
+    for part in range(2):
+        for d in range(problem.push.shape[1]):
+            for n in range(problem.orders.size):
+                row.phasors[part, d, n] = problem.phasors[i, part, d, n]
+    for k in range(row.patterns.size):
+        row.patterns[k] = 0
+        row.parts.known[k] = 0
+    for k in range(row.parts.loads_known.size):
+        row.parts.loads_known[k] = 0
+    channels = problem.push.shape[1]
+    if 2 * row.intervals[0] * channels <= row.loads.shape[0]:
+        for k in range(2 * row.intervals[0]):
+            _fill_channels(problem, row, SECTION + k * h, row.loads, k * channels)
+
+
+@kernel
+def set_channels(problem, row, tau, interval, motion):
+    """Put the series of the channels, which begin at the phase tau, after those of the modes in the motion.
+
+    Parameters
+    ----------
+    problem, row : Problem, Row
+    tau : phase of the load
+    interval : of the row, if tau is its beginning; else -1
+    motion : Motion
+    """
+    if motion.clock[0] == tau:
+        return
+    motion.clock[0] = tau
+    modes, channels = problem.push.shape
+    if interval < 0 or 2 * row.intervals[0] * channels > row.loads.shape[0]:
+        _fill_channels(problem, row, tau, motion.series, modes)
+        return
+    for k in range(0, channels * WIDTH, LANES):
+        store(load(row.loads, interval * channels * WIDTH + k), motion.series, modes * WIDTH + k)

@@ -13,6 +13,7 @@ limit_kinds      what ends the motion without stops, and which contact stops
 partial          least friction at which one contact sticks while the others move
 starts           initial states: at rest, or in a large sliding motion
 still            masses that do not move
+outputs          outputs of maps and responses: what each is computed from, and for which contacts
 maps             the cells of a map, on several threads
 resting_starts   motions from many states in which a contact is at its limit of friction (mu > 1)
 dataset          maps and boundaries as labelled variables

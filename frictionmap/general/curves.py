@@ -16,8 +16,9 @@ from .boundaries import find_boundaries
 from .cycle import equivalent, first_harmonics, harmonic_values, parts, phase_values, work_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
 from .held import held_forces, held_ranges
+from .outputs import is_wanted
 from .problem import general_of, problem_of, static_offset
-from .response import is_wanted, scalars
+from .response import scalars
 from .steps import Steps, cell_steps
 
 #: Scalars of every cell.

@@ -4,6 +4,7 @@ import numpy as np
 
 from .._kernels.general.problem import SECTION
 from ..model.system import System
+from .outputs import output_values
 from .problem import general_of, static_offset
 from .steps import Steps
 
@@ -71,11 +72,13 @@ def work_values(system: System, steps: Steps) -> dict[str, np.ndarray]:
     Of a motion that does not repeat only the work of friction is known, an average.
     """
     general = general_of(system)
+    friction, wall = (
+        output_values(f"work_{of}", system, steps.cells)[0, 0, 0] for of in ("friction", "wall")
+    )
     if not steps.period:
         unknown = np.array(np.nan)
-        return {"work_input": unknown, "work_damping": unknown, "work_friction": steps.works[0]}
+        return {"work_input": unknown, "work_damping": unknown, "work_friction": friction}
     damping = _damping_work(system, steps)
-    friction, wall = steps.works
     if general.base:
         given = friction.sum() + damping - wall.sum()
     else:

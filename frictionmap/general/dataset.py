@@ -5,9 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from .. import checks, regimes
-from .._kernels.general.fill import Cells
-from ..datasets.labels import GENERAL_VARIABLES, LABELS, PER_CONTACT, attributes
+from .. import checks
+from ..datasets.labels import LABELS, PER_CONTACT, attributes
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError
 from ..jobs import Progress, Watch
@@ -16,23 +15,8 @@ from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import Boundaries, find_boundaries
 from .maps import solve_cells
+from .outputs import COUNTERPARTS, TABLE, depends_on_places, is_of_masses, is_wanted, output_values
 from .problem import general_of
-
-#: Outputs that general systems have.
-OUTPUTS = (
-    "regime", "stops_per_cycle", "contact_amplitude", "stuck_fraction", "period", "origin", "cycles",
-    "status", "stops_per_cycle_error", "stuck_fraction_error",
-    "multiplier", "amplitude", "sliding_distance", "work_friction",
-    *(name for name in GENERAL_VARIABLES if name != "equivalent_stiffness"),
-)  # fmt: skip
-
-#: Outputs of elastic contacts that take the place of those of rigid ones.
-_ELASTIC = {"stops_per_cycle": "slips_per_cycle", "stuck_fraction": "elastic_fraction"}
-
-_OF_MASSES = ("amplitude", "peak_to_peak", "midpoint")
-
-#: Outputs that depend on the places of contacts at rest; that of a rigid one at rest is 0 by definition.
-_PLACED = {"amplitude", "midpoint", "contact_midpoint", "contact_amplitude"}
 
 
 def outputs_of(general: ContactSystem, solver: Solver) -> tuple[str, ...]:
@@ -45,16 +29,13 @@ def outputs_of(general: ContactSystem, solver: Solver) -> tuple[str, ...]:
     """
     names: list[str] = []
     for name in solver.outputs:
-        if name not in OUTPUTS:
+        if name not in TABLE:
             raise InputError(
                 f"cannot compute {name} with several contacts, springs, belts or loads of several harmonics; "
-                f"valid outputs: {', '.join(OUTPUTS)}"
+                f"valid outputs: {', '.join(TABLE)}"
             )
-        if name in _ELASTIC and general.elastic.any():
-            names += [name] if not general.elastic.all() else []
-            names.append(_ELASTIC[name])
-        else:
-            names.append(name)
+        counterpart = COUNTERPARTS.get(name, name)
+        names += [one for one in (name, counterpart) if is_wanted(one, general) or counterpart == name]
     if general.count > 1:
         names.append("contact_regime")
     return tuple(dict.fromkeys((*names, "status")))
@@ -66,51 +47,6 @@ def contact_variable(name: str, values: np.ndarray, contacts: int) -> xr.Variabl
     if contacts == 1:
         return label_variable(name, np.ascontiguousarray(values[..., 0]))
     return xr.Variable((*label.dims, "contact"), values, label_variable(name, values[..., 0]).attrs)
-
-
-def contact_values(name: str, system: System, found: Cells) -> np.ndarray:
-    """Values of an output for every contact, (n_mu, n_r, n_beta, N)."""
-    general = general_of(system)
-    count = general.count
-    low, high = found.lowest[..., :count], found.highest[..., :count]
-    rests = found.contact_regime == regimes.PERMANENT_STICKING
-    rigid = ~general.elastic
-    still = rests & rigid
-    if name == "contact_regime":
-        return found.contact_regime
-    if name in ("stops_per_cycle", "turns_per_cycle"):
-        table = found.stops if name == "stops_per_cycle" else found.turns
-        return np.where(rests | ~rigid, np.nan, table)
-    if name in ("slips_per_cycle", "slip_reversals_per_cycle"):
-        return np.where(rigid, np.nan, found.slips if name == "slips_per_cycle" else found.reversals)
-    if name == "least_slip":
-        return np.where(rigid, np.nan, found.least_slip)
-    if name == "stops_per_cycle_error":
-        return np.where(rests | ~rigid, np.nan, found.stops_error)
-    if name == "stuck_fraction_error":
-        return np.where(rigid, found.stuck_error, np.nan)
-    if name in ("stuck_fraction", "elastic_fraction"):
-        return np.where(rigid if name == "elastic_fraction" else ~rigid, np.nan, found.stuck)
-    if name == "contact_amplitude":
-        return np.where(still, 0.0, np.maximum(np.abs(low), np.abs(high)))
-    if name == "contact_peak_to_peak":
-        return np.where(still, 0.0, high - low)
-    if name == "contact_midpoint":
-        return np.where(np.isfinite(high - low), 0.5 * (low + high), np.nan)
-    if name == "sliding_distance":
-        return found.distance
-    return np.maximum(found.works, 0.0) if name == "work_friction" else found.wall_works
-
-
-def cell_values(name: str, system: System, found: Cells) -> np.ndarray:
-    """Values of an output for every cell, or for every mass, (n_mu, n_r, n_beta[, n])."""
-    count = general_of(system).count
-    if name not in _OF_MASSES:
-        return getattr(found, name)
-    low, high = found.lowest[..., count:], found.highest[..., count:]
-    if name == "amplitude":
-        return np.maximum(np.abs(low), np.abs(high))
-    return high - low if name == "peak_to_peak" else 0.5 * (low + high)
 
 
 def boundary_variables(system: System, limits: Boundaries) -> dict[str, xr.Variable]:
@@ -156,18 +92,12 @@ def cell_arrays(
 ) -> tuple[dict[str, np.ndarray], Boundaries]:  # fmt: skip
     """Outputs over the axes mu, r and beta, those of contacts (n_mu, n_r, n_beta, N), and the boundaries."""
     general = general_of(system)
-    masses = any(name in _OF_MASSES for name in names)
+    masses = any(is_of_masses(name) for name in names)
+    placed = any(depends_on_places(name, general) for name in names)
     threads = checks.threads(threads)
     limits = find_boundaries(system, axes["r"], axes["mu"], threads, watch)
-    placed = _PLACED if general.elastic.any() else _PLACED - {"contact_amplitude"}
-    cells = solve_cells(
-        system, axes, limits.beta_stick, solver, threads, progress, watch, masses, bool(placed & set(names))
-    )
-    found: dict[str, np.ndarray] = {}
-    for name in names:
-        values_of = contact_values if name in PER_CONTACT else cell_values
-        found[name] = values_of(name, system, cells).astype(LABELS[name].dtype, copy=False)
-    return found, limits
+    cells = solve_cells(system, axes, limits.beta_stick, solver, threads, progress, watch, masses, placed)
+    return {name: output_values(name, system, cells) for name in names}, limits
 
 
 def general_map(
@@ -192,7 +122,7 @@ def general_map(
             if name in variables:
                 variables[name].attrs = full | {"long_name": LABELS[name].long_name}
     coords = {name: coordinate(name, values) for name, values in axes.items()}
-    if any(name in _OF_MASSES for name in names):
+    if any(is_of_masses(name) for name in names):
         coords["dof"] = coordinate("dof", np.array(system.dofs.numbers))
     return xr.Dataset(
         variables | boundary_variables(system, limits), coords=coords | contact_coordinates(system)

@@ -12,25 +12,13 @@ from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines
 from .held import held_ranges
+from .outputs import allocate
 from .problem import general_of, problem_of, static_offset
 from .starts import initial_states
 from .still import put_still
 
 #: Cells of a job at least, in whole rows: a job costs as much as a few cells.
 _IN_A_JOB = 64
-
-
-def allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:
-    """Allocate unresolved cells."""
-    per_contact = (*shape, contacts)
-    numbers = [np.full(per_contact, np.nan) for _ in range(11)]
-    ranges = [np.full((*shape, contacts + masses), np.nan) for _ in range(2)]
-    return Cells(
-        np.full(shape, regimes.UNRESOLVED, np.int8), np.full(shape, regimes.NOT_COMPUTED, np.int8),
-        np.full(shape, regimes.CLOSED_FORM, np.int8), np.zeros(shape, np.int32), np.zeros(shape, np.int16),
-        np.full(shape, np.nan), np.full(shape, regimes.UNRESOLVED, np.int8),
-        np.full(per_contact, regimes.UNRESOLVED, np.int8), *numbers, *ranges,
-    )  # fmt: skip
 
 
 def _put_r_zero(found: Cells, at_zero: int, beta: np.ndarray, stick: np.ndarray) -> None:

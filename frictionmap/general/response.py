@@ -15,18 +15,10 @@ from ..model.system import System
 from .boundaries import find_boundaries
 from .cycle import cycle_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
+from .outputs import TABLE, is_wanted, output_values
 from .problem import general_of, static_offset
 from .steps import Steps, steps_of
-from .still import put_still, still_masses
-
-
-def _overall(found: list[int]) -> int:
-    """Regime of all contacts from those of each."""
-    if set(found) == {regimes.PERMANENT_STICKING}:
-        return regimes.PERMANENT_STICKING
-    if min(found) >= regimes.CONTINUOUS:
-        return found[0] if len(found) == 1 else regimes.CONTINUOUS
-    return regimes.STICK_SLIP
+from .still import still_masses
 
 
 def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarray]:
@@ -81,39 +73,7 @@ def _events(system: System, steps: Steps) -> dict[str, np.ndarray]:
 
 def scalars(system: System, steps: Steps) -> dict[str, np.ndarray]:
     """Numbers of a steady state: of all, (), of each contact, (N,), of each mass, (n,)."""
-    general = general_of(system)
-    count = steps.contacts
-    of_contacts = [steps.per_cycle(j) for j in range(count)]
-    found: dict[str, np.ndarray] = {
-        name: np.array([one[name] for one in of_contacts]) for name in of_contacts[0]
-    }
-    rests = np.array([steps.regime(j) == regimes.PERMANENT_STICKING for j in range(count)])
-    still = rests & (steps.problem.spring == 0.0)
-    own = [steps.regime(j) for j in range(count)]
-    low, high = steps.lowest.copy(), steps.highest.copy()
-    put_still(general, np.array([own]), low[np.newaxis], high[np.newaxis])
-    largest = np.maximum(np.abs(low), np.abs(high))
-    found |= {
-        "regime": np.array(_overall(own)),
-        "contact_regime": np.array(own),
-        "contact_amplitude": np.where(still, 0.0, largest[:count]),
-        "contact_peak_to_peak": np.where(still, 0.0, (high - low)[:count]),
-        "contact_midpoint": 0.5 * (high + low)[:count],
-        "amplitude": largest[count:],
-        "peak_to_peak": (high - low)[count:],
-        "midpoint": 0.5 * (high + low)[count:],
-        "period": np.array(steps.period),
-        "status": np.array(regimes.RESOLVED if steps.period else regimes.IRREGULAR),
-        "multiplier": np.array(steps.multiplier),
-        "cycles": np.array(int(np.ceil(steps.cycles))),
-        "origin": np.array(regimes.PERIODIC_ORBIT if steps.period else regimes.INTEGRATED),
-        "release_order": np.array(steps.release_order),
-        "sliding_distance": steps.distance,
-        "least_slip": np.where(general.elastic, steps.least_slip, np.nan),
-        "work_friction": steps.works[0],
-        "work_wall": steps.works[1],
-    }
-    return found
+    return {name: output_values(name, system, steps.cells)[0, 0, 0] for name in TABLE}
 
 
 def labelled(name: str, values: np.ndarray, contacts: int, what: str = "") -> xr.Variable:
@@ -129,17 +89,6 @@ def _trace(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
     if contacts == 1:
         return label_variable(name, values[0])
     return xr.Variable(("contact", "tau"), values, label_variable(name, values[0]).attrs)
-
-
-def is_wanted(name: str, general: ContactSystem) -> bool:
-    """Whether a number says something about contacts of these kinds."""
-    if name.startswith(("stops_", "turns_", "stuck_")):
-        return not general.elastic.all()
-    if name.startswith(("slip_", "slips", "elastic", "least_slip")):
-        return bool(general.elastic.any())
-    if name == "work_wall":
-        return any(group.first.wall_velocity for group in general.groups)
-    return name not in ("contact_regime", "release_order") or general.count > 1
 
 
 def general_response(

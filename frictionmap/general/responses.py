@@ -6,9 +6,9 @@ from ..jobs import Watch
 from ..model.settings import Solver
 from ..model.sizes import Sizes, Wanted
 from ..model.system import System
-from .dataset import cell_values, contact_values
 from .held import least_static_friction, stick_scales
 from .maps import solve_cells
+from .outputs import number, output_values
 from .problem import general_of
 
 QUANTITIES = ("amplitude", "contact")
@@ -23,10 +23,10 @@ def sizes_on_grid(
     stick = stick_scales(general_of(system), needed, axes["mu"]).max(axis=2)
     found = solve_cells(system, axes, stick, solver, threads, None, watch, masses=True)
     if wanted.quantity == "amplitude":
-        size = cell_values("amplitude", system, found)[0, ..., wanted.row]
+        size = output_values("amplitude", system, found)[0, ..., wanted.row]
     else:
-        size = contact_values("contact_amplitude", system, found)[0, ..., wanted.contact]
-    stops = np.where(np.isnan(found.stops[0]), 0.0, found.stops[0]).max(axis=-1)
+        size = output_values("contact_amplitude", system, found)[0, ..., wanted.contact]
+    stops = np.nan_to_num(number("stops", found)[0]).max(axis=-1)
     return Sizes(size, found.regime[0], stops, found.status[0])
 
 

@@ -15,7 +15,7 @@ from .._kernels.general.problem import Problem
 from ..jobs import Watch, run_jobs
 from ..model.system import System
 from .boundaries import friction_lines, sliding_states
-from .maps import allocate
+from .outputs import allocate, number
 from .problem import general_of, problem_of
 
 #: Static friction of a contact that is about to slip is exceeded by this share: it slips at once.
@@ -100,5 +100,4 @@ def stops_of(
         cancel[0] = 1  # the kernel checks it at every row
         raise
     rests = (found.contact_regime[0, :, 0] == regimes.PERMANENT_STICKING).any(axis=1)
-    stops = found.stops[0, :, 0]
-    return np.maximum(rests, np.where(np.isnan(stops), 0.0, stops).max(axis=1))
+    return np.maximum(rests, np.nan_to_num(number("stops", found)[0, :, 0]).max(axis=1))

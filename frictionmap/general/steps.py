@@ -7,17 +7,14 @@ import numpy as np
 from .. import regimes
 from .._kernels.general.counts import (
     MOVED,
-    RELEASE_ORDER,
     REVERSALS,
     SLIPS,
     STOPS,
-    STOPS_ERROR,
-    STUCK,
-    STUCK_ERROR,
     TURNS,
 )
+from .._kernels.general.fill import Cells, store_motion
 from .._kernels.general.problem import LONG, SECTION, Problem
-from .._kernels.general.record import LEAST_SLIP
+from .._kernels.general.record import Record
 from .._kernels.general.series import Friction
 from .._kernels.general.steady import AVERAGED, REPEATS
 from .._kernels.long_periods import WINDOW
@@ -26,9 +23,11 @@ from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines
 from .held import least_static_friction
-from .problem import ModalSystem, problem_of, static_offset
+from .outputs import allocate
+from .problem import ModalSystem, general_of, problem_of, static_offset
 from .recorded import recorded_state
 from .starts import initial_states
+from .still import put_still
 
 #: Steps for which there is room at first.
 _FIRST = 512
@@ -53,18 +52,11 @@ class Steps:
     h: float
     series: np.ndarray  # (steps, rows, WIDTH)
     senses: np.ndarray  # (steps, N)
-    counts: np.ndarray
+    cells: Cells  # one cell
     period: int  # 0: the motion does not repeat, and numbers are averages
     shown: int  # periods of the load that are shown, from tau = 0 on
     span: int  # periods that the steps cover
-    averaged: int  # periods that `counts` are of
-    multiplier: float
     cycles: float
-    lowest: np.ndarray  # (N + n,) extremes in the contacts and of the masses
-    highest: np.ndarray
-    works: np.ndarray  # (2, N) per period of the load
-    distance: np.ndarray  # (N,)
-    least_slip: np.ndarray  # (N,)
 
     @property
     def contacts(self) -> int:
@@ -120,46 +112,23 @@ class Steps:
         found[:, 0] *= 0.5
         return found
 
-    def regime(self, j: int) -> int:
-        """Regime of a contact."""
-        if not self.counts[MOVED, j]:
-            return regimes.PERMANENT_STICKING
-        elastic = bool(self.problem.spring[j])
-        if self.counts[STUCK if elastic else STOPS, j]:
-            return regimes.STICK_SLIP
-        if self.problem.belt[j] != 0.0 and not self.counts[TURNS, j]:
-            return regimes.ONE_WAY_SLIDING
-        return regimes.STICK_SLIP if elastic else regimes.CONTINUOUS
-
-    @property
-    def release_order(self) -> int:
-        """Whether letting contacts go all at once would make a difference at some event."""
-        return int(self.counts[RELEASE_ORDER].any())
-
-    def per_cycle(self, j: int) -> dict[str, float]:
-        """Numbers of a contact per period of the load."""
-        c, p = self.counts[:, j], self.averaged
-        elastic = bool(self.problem.spring[j])
-        slips = 1.0 if elastic and c[MOVED] and not c[STUCK] else c[SLIPS] / p
-        rests = not c[MOVED]
-        stuck = 1.0 if rests else c[STUCK] / (2.0 * np.pi * p)
-        none = np.nan
-        return {
-            "stops_per_cycle": none if elastic or rests else c[STOPS] / p,
-            "turns_per_cycle": none if elastic or rests else c[TURNS] / p,
-            "stuck_fraction": none if elastic else stuck,
-            "stops_per_cycle_error": none if elastic or rests else c[STOPS_ERROR],
-            "stuck_fraction_error": none if elastic else c[STUCK_ERROR],
-            "slips_per_cycle": slips if elastic else none,
-            "slip_reversals_per_cycle": c[REVERSALS] / p if elastic else none,
-            "elastic_fraction": stuck if elastic else none,
-        }
-
 
 def _rests(system: System, problem: Problem, i: int, friction: Friction) -> bool:
     """Whether all contacts stick permanently, by closed form."""
     needed = least_static_friction(system, problem.r[i : i + 1])[0]
     return bool((friction.static >= needed).all())
+
+
+def _cells(system: System, problem: Problem, counts: np.ndarray, halves: int, record: Record) -> Cells:
+    """Store what was measured over some half periods, as a map does it."""
+    general = general_of(system)
+    cells = allocate((1, 1, 1), general.count, system.n)
+    store_motion(problem, cells, counts, halves, record)
+    shift = np.concatenate(static_offset(system))
+    for table in (cells.lowest, cells.highest):
+        table += shift
+    put_still(general, cells.contact_regime, cells.lowest, cells.highest)
+    return cells
 
 
 def steps_of(system: System, r: float, beta: float, mu: float, solver: Solver) -> Steps:
@@ -199,14 +168,12 @@ def cell_steps(
     lengths = record.patterns[:count, -1] * h
     begins = np.concatenate(([0.0], np.cumsum(lengths)[:-1]))
     own = lengths > 0.0
-    shift = np.concatenate(static_offset(system))
-    works = record.works / averaged
-    works[0] = np.maximum(works[0], 0.0)  # of a contact that hardly slides, rounding may be negative
+    cells = _cells(system, problem, counts, 2 * averaged, record)
+    cells.status[:] = regimes.RESOLVED if period else regimes.IRREGULAR
+    cells.origin[:] = regimes.PERIODIC_ORBIT if period else regimes.INTEGRATED
+    cells.period[:], cells.multiplier[:], cells.cycles[:] = period, multiplier, np.ceil(found.cycles)
     return Steps(
         problem, modal, friction, float(problem.r[i]), begins[own], lengths[own], h,
-        record.steps[:count][own],
-        record.patterns[:count][own][:, :-1].astype(np.int8), counts, period, shown, span, averaged,
-        multiplier, found.cycles,
-        record.ranges[0] + shift, record.ranges[1] + shift, works, record.distance / averaged,
-        np.where(counts[MOVED] > 0.0, record.slips[LEAST_SLIP], 0.0),
+        record.steps[:count][own], record.patterns[:count][own][:, :-1].astype(np.int8), cells,
+        period, shown, span, found.cycles,
     )  # fmt: skip

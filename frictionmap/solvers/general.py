@@ -51,14 +51,16 @@ class GeneralEngine(Engine):
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        from ..general.dataset import OUTPUTS
+        from ..general.outputs import TABLE
 
-        return OUTPUTS
+        return tuple(TABLE)
 
     @property
     def bytes_per_cell(self) -> float:
-        contacts, masses = self.system.contact_system.count, self.system.n
-        return 28.0 + 8.0 * 10.0 * contacts + 16.0 * (contacts + masses)
+        from ..general.outputs import allocate
+
+        one = allocate((1, 1, 1), self.system.contact_system.count, self.system.n)
+        return float(sum(table.nbytes for table in one))
 
     def needed_friction(self, r: np.ndarray) -> np.ndarray:
         return least_static_friction(self.system, r)

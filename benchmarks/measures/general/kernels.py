@@ -17,7 +17,7 @@ from frictionmap._kernels.general.series import Friction
 from frictionmap._kernels.general.steady import REPEATS, find, make_workspace, measure
 from frictionmap.general.boundaries import friction_lines, rest_states
 from frictionmap.general.held import least_static_friction, stick_scales
-from frictionmap.general.maps import allocate
+from frictionmap.general.outputs import allocate
 from frictionmap.general.problem import general_of, problem_of
 
 from ..own_entry import own_entry

@@ -40,7 +40,19 @@ _ISOLATED = 1.0 - 1e-9
 
 #: Contacts of a row that stick permanently: not known yet, some slip after the start, none does
 #: in this cell and those after it.
-_UNKNOWN, _SLIPS, _STAYS = 0, 1, 2
+_UNKNOWN, _SOME_SLIP, _STAYS = 0, 1, 2
+
+
+#: Numbers of a contact that are stored, per period of the load: counted ones; standard errors of averages;
+#: least slip, sliding distance, works of friction and of a wall at constant velocity.
+NUMBERS = (
+    "stops", "turns", "stuck", "slips", "reversals", "stops_error", "stuck_error",
+    "least_slip", "distance", "work_friction", "work_wall",
+)  # fmt: skip
+(
+    _STOPS, _TURNS, _STUCK, _SLIPS, _REVERSALS, _STOPS_ERROR, _STUCK_ERROR,
+    _LEAST_SLIP, _DISTANCE, _WORK_FRICTION, _WORK_WALL,
+) = range(len(NUMBERS))  # fmt: skip
 
 
 class Grid(NamedTuple):
@@ -76,67 +88,75 @@ class Cells(NamedTuple):
     multiplier: np.ndarray
     release_order: np.ndarray  # 1 where releasing contacts all at once would make a difference
     contact_regime: np.ndarray  # (..., N)
-    stops: np.ndarray
-    turns: np.ndarray
-    stuck: np.ndarray
-    stops_error: np.ndarray  # standard errors
-    stuck_error: np.ndarray
-    slips: np.ndarray
-    reversals: np.ndarray
-    least_slip: np.ndarray
-    distance: np.ndarray
-    works: np.ndarray  # of friction
-    wall_works: np.ndarray  # of walls at constant velocity
+    numbers: np.ndarray  # (len(NUMBERS), ..., N)
     lowest: np.ndarray  # (..., N + n)
     highest: np.ndarray
 
 
 @kernel
-def _store_contacts(problem, out, m, i, b, counts, halves, record):
-    """Store the numbers of every contact; return the regime of all.
+def _store_numbers(problem, numbers, m, i, b, counts, halves, record):
+    """Store the numbers of every contact.
 
     Parameters
     ----------
     problem : Problem
-    out : Cells
+    numbers : see `Cells`
     m, i, b : indices of mu, r and beta
     counts : counters of `follow`, over the half periods measured
     halves : number of these
     record : Record
     """
-    contacts = problem.spring.size
     period = 0.5 * halves
+    for j in range(problem.spring.size):
+        moved = counts[MOVED, j] != 0.0
+        slips_throughout = moved and has_force(problem, j) and counts[STUCK, j] == 0.0
+        numbers[_STOPS, m, i, b, j] = counts[STOPS, j] / period
+        numbers[_TURNS, m, i, b, j] = counts[TURNS, j] / period
+        numbers[_STUCK, m, i, b, j] = counts[STUCK, j] / (math.pi * halves) if moved else 1.0
+        numbers[_SLIPS, m, i, b, j] = 1.0 if slips_throughout else counts[SLIPS, j] / period
+        numbers[_REVERSALS, m, i, b, j] = counts[REVERSALS, j] / period
+        numbers[_STOPS_ERROR, m, i, b, j] = counts[STOPS_ERROR, j]
+        numbers[_STUCK_ERROR, m, i, b, j] = counts[STUCK_ERROR, j]
+        numbers[_LEAST_SLIP, m, i, b, j] = record.slips[LEAST_SLIP, j] if moved else 0.0
+        numbers[_DISTANCE, m, i, b, j] = record.distance[j] / period
+        numbers[_WORK_FRICTION, m, i, b, j] = record.works[OF_FRICTION, j] / period
+        numbers[_WORK_WALL, m, i, b, j] = record.works[OF_WALL, j] / period
+
+
+@kernel
+def _store_motion(problem, out, m, i, b, counts, halves, record):
+    """Store what was measured of a steady state, and the regimes.
+
+    Parameters
+    ----------
+    problem : Problem
+    out : Cells
+    m, i, b, counts, halves, record : see `_store_numbers`
+    """
+    _store_numbers(problem, out.numbers, m, i, b, counts, halves, record)
+    contacts = problem.spring.size
     least, most = CONTINUOUS + 2, PERMANENT_STICKING
     differs = False
     for j in range(contacts):
         regime = regime_of(problem, counts, j)
         least, most = min(least, regime), max(most, regime)
         out.contact_regime[m, i, b, j] = regime
-        out.stops[m, i, b, j] = counts[STOPS, j] / period
-        out.turns[m, i, b, j] = counts[TURNS, j] / period
-        out.stuck[m, i, b, j] = counts[STUCK, j] / (math.pi * halves)
-        out.stops_error[m, i, b, j] = counts[STOPS_ERROR, j]
-        out.stuck_error[m, i, b, j] = counts[STUCK_ERROR, j]
-        out.slips[m, i, b, j] = counts[SLIPS, j] / period
-        if has_force(problem, j) and counts[STUCK, j] == 0.0:
-            out.slips[m, i, b, j] = 1.0
-        if counts[MOVED, j] == 0.0:
-            out.stuck[m, i, b, j] = 1.0
-        out.reversals[m, i, b, j] = counts[REVERSALS, j] / period
-        out.least_slip[m, i, b, j] = record.slips[LEAST_SLIP, j]
-        out.distance[m, i, b, j] = record.distance[j] / period
-        out.works[m, i, b, j] = record.works[OF_FRICTION, j] / period
-        out.wall_works[m, i, b, j] = record.works[OF_WALL, j] / period
         differs = differs or counts[RELEASE_ORDER, j] != 0.0
     out.release_order[m, i, b] = 1 if differs else 0
-    for k in range(record.ranges.shape[1]):
+    for k in range(out.lowest.shape[3]):
         out.lowest[m, i, b, k] = record.ranges[LOW, k]
         out.highest[m, i, b, k] = record.ranges[HIGH, k]
+    out.regime[m, i, b] = STICK_SLIP
     if most == PERMANENT_STICKING:
-        return PERMANENT_STICKING
-    if least >= CONTINUOUS:
-        return ONE_WAY_SLIDING if contacts == 1 and least == ONE_WAY_SLIDING else CONTINUOUS
-    return STICK_SLIP
+        out.regime[m, i, b] = PERMANENT_STICKING
+    elif least >= CONTINUOUS:
+        out.regime[m, i, b] = ONE_WAY_SLIDING if contacts == 1 and least == ONE_WAY_SLIDING else CONTINUOUS
+
+
+@entry
+def store_motion(problem, out, counts, halves, record):
+    """Store one steady state in the only cell of `out`; see `_store_motion`."""
+    _store_motion(packed(problem), packed(out), 0, 0, 0, counts, halves, packed(record))
 
 
 @kernel
@@ -157,7 +177,7 @@ def _store(problem, out, m, i, b, found, measured, counts, record):
     if found.status == AVERAGED:
         out.status[m, i, b] = IRREGULAR
         out.origin[m, i, b] = INTEGRATED
-        out.regime[m, i, b] = _store_contacts(problem, out, m, i, b, counts, found.halves, record)
+        _store_motion(problem, out, m, i, b, counts, found.halves, record)
         return
     if found.status != REPEATS:
         out.status[m, i, b] = NOT_REACHED if found.status == NO_REPEAT else TOO_MANY_EVENTS
@@ -167,7 +187,7 @@ def _store(problem, out, m, i, b, found, measured, counts, record):
     out.origin[m, i, b] = PERIODIC_ORBIT
     out.period[m, i, b] = steady_period(found.halves)
     out.multiplier[m, i, b] = multiplier
-    out.regime[m, i, b] = _store_contacts(problem, out, m, i, b, counts, halves, record)
+    _store_motion(problem, out, m, i, b, counts, halves, record)
 
 
 @kernel
@@ -182,16 +202,8 @@ def _store_stuck(out, m, i, b):
     out.release_order[m, i, b] = 0
     for j in range(out.contact_regime.shape[3]):
         out.contact_regime[m, i, b, j] = PERMANENT_STICKING
-        out.stops[m, i, b, j] = 0.0
-        out.turns[m, i, b, j] = 0.0
-        out.stuck[m, i, b, j] = 1.0
-        out.stops_error[m, i, b, j] = out.stuck_error[m, i, b, j] = 0.0
-        out.slips[m, i, b, j] = 0.0
-        out.reversals[m, i, b, j] = 0.0
-        out.least_slip[m, i, b, j] = 0.0
-        out.distance[m, i, b, j] = 0.0
-        out.works[m, i, b, j] = 0.0
-        out.wall_works[m, i, b, j] = 0.0
+        for k in range(out.numbers.shape[0]):
+            out.numbers[k, m, i, b, j] = 1.0 if k == _STUCK else 0.0
     for k in range(out.lowest.shape[3]):
         out.lowest[m, i, b, k] = out.highest[m, i, b, k] = 0.0
 
@@ -205,12 +217,12 @@ def _place_stuck(problem, grid, m, i, b, friction, workspace, place, out):
     problem, grid : Problem, Grid
     m, i, b : indices of mu, r and beta
     friction, workspace : Friction, replaced; Workspace
-    place : _UNKNOWN, _SLIPS or _STAYS, of the cells of the row before this one
+    place : _UNKNOWN, _SOME_SLIP or _STAYS, of the cells of the row before this one
     out : Cells
 
     Returns
     -------
-    int : _SLIPS or _STAYS
+    int : _SOME_SLIP or _STAYS
     """
     row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     places, needs = workspace.places, workspace.needs
@@ -240,7 +252,7 @@ def _place_stuck(problem, grid, m, i, b, friction, workspace, place, out):
             shift[k] = math.nan
     for k in range(shift.size):
         out.highest[m, i, b, k] = shift[k]
-    return _SLIPS
+    return _SOME_SLIP
 
 
 @kernel

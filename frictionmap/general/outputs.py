@@ -1,0 +1,174 @@
+"""Outputs of maps and responses of general systems: what each is computed from, and for which contacts.
+
+Names, types, units and meanings are those of `datasets.labels`.  A map and a response take the same values
+from the `Cells` that kernels fill.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import regimes
+from .._kernels.general.fill import NUMBERS, Cells
+from .._kernels.general.laws.kinds import ELASTIC, RIGID
+from ..datasets.labels import LABELS, PER_CONTACT
+from ..model.general import ContactSystem
+from ..model.system import System
+from .problem import general_of
+
+#: Laws by number, and all of them.
+_ALL = (RIGID, ELASTIC)
+
+
+class Solved(NamedTuple):
+    """Cells of a system, split into contacts and masses."""
+
+    cells: Cells
+    laws: np.ndarray  # (N,)
+    rests: np.ndarray  # (..., N) bool: whether a contact sticks permanently
+    contacts: tuple[np.ndarray, np.ndarray]  # (..., N) lowest and highest displacements
+    masses: tuple[np.ndarray, np.ndarray]  # (..., n)
+
+
+class Output(NamedTuple):
+    """One output."""
+
+    values: Callable[[Solved], np.ndarray]  # (..., N) of contacts, (..., n) of masses, else (...)
+    laws: tuple[int, ...] = _ALL  # contacts that have it; it is NaN for others
+    moving: bool = False  # whether only contacts that move have it
+    placed: tuple[int, ...] = ()  # laws with which it depends on the places of contacts at rest
+    wanted: Callable[[ContactSystem], bool] = lambda _: True  # systems that have it
+
+
+def _cell(name: str) -> Callable[[Solved], np.ndarray]:
+    """Values of a cell as kernels store them."""
+    return lambda solved: getattr(solved.cells, name)
+
+
+def number(name: str, cells: Cells) -> np.ndarray:
+    """Numbers of contacts as kernels store them, (..., N); see `NUMBERS`."""
+    return cells.numbers[NUMBERS.index(name)]
+
+
+def _number(name: str) -> Callable[[Solved], np.ndarray]:
+    return lambda solved: number(name, solved.cells)
+
+
+def _zero_at_rest(values: Callable[[Solved], np.ndarray]) -> Callable[[Solved], np.ndarray]:
+    """Values that are 0 by definition of a rigid contact at rest."""
+    return lambda solved: np.where(solved.rests & (solved.laws == RIGID), 0.0, values(solved))
+
+
+def _modulus(ends: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    low, high = ends
+    return np.maximum(np.abs(low), np.abs(high))
+
+
+def _range(ends: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    low, high = ends
+    return high - low
+
+
+def _middle(ends: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    low, high = ends
+    return 0.5 * (low + high)
+
+
+def _finite_middle(ends: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    return np.where(np.isfinite(_range(ends)), _middle(ends), np.nan)
+
+
+def _several(general: ContactSystem) -> bool:
+    return general.count > 1
+
+
+def _belts(general: ContactSystem) -> bool:
+    return any(group.first.wall_velocity for group in general.groups)
+
+
+TABLE = {
+    "regime": Output(_cell("regime")),
+    "stops_per_cycle": Output(_number("stops"), (RIGID,), moving=True),
+    "contact_amplitude": Output(_zero_at_rest(lambda s: _modulus(s.contacts)), placed=(ELASTIC,)),
+    "stuck_fraction": Output(_number("stuck"), (RIGID,)),
+    "period": Output(_cell("period")),
+    "origin": Output(_cell("origin")),
+    "cycles": Output(_cell("cycles")),
+    "status": Output(_cell("status")),
+    "stops_per_cycle_error": Output(_number("stops_error"), (RIGID,), moving=True),
+    "stuck_fraction_error": Output(_number("stuck_error"), (RIGID,)),
+    "multiplier": Output(_cell("multiplier")),
+    "amplitude": Output(lambda s: _modulus(s.masses), placed=_ALL),
+    "sliding_distance": Output(_number("distance")),
+    # rounding may be negative in a contact that hardly slides
+    "work_friction": Output(lambda s: np.maximum(number("work_friction", s.cells), 0.0)),
+    "contact_regime": Output(_cell("contact_regime"), wanted=_several),
+    "turns_per_cycle": Output(_number("turns"), (RIGID,), moving=True),
+    "slips_per_cycle": Output(_number("slips"), (ELASTIC,)),
+    "slip_reversals_per_cycle": Output(_number("reversals"), (ELASTIC,)),
+    "elastic_fraction": Output(_number("stuck"), (ELASTIC,)),
+    "least_slip": Output(_number("least_slip"), (ELASTIC,)),
+    "contact_peak_to_peak": Output(_zero_at_rest(lambda s: _range(s.contacts))),
+    "contact_midpoint": Output(lambda s: _finite_middle(s.contacts), placed=_ALL),
+    "peak_to_peak": Output(lambda s: _range(s.masses)),
+    "midpoint": Output(lambda s: _middle(s.masses), placed=_ALL),
+    "work_wall": Output(_number("work_wall"), wanted=_belts),
+    "release_order": Output(_cell("release_order"), wanted=_several),
+}
+
+#: Outputs of elastic contacts that take the place of those of rigid ones.
+COUNTERPARTS = {"stops_per_cycle": "slips_per_cycle", "stuck_fraction": "elastic_fraction"}
+
+
+def laws_of(general: ContactSystem) -> np.ndarray:
+    """The law of each contact, (N,)."""
+    return np.where(general.elastic, ELASTIC, RIGID)
+
+
+def is_wanted(name: str, general: ContactSystem) -> bool:
+    """Whether a variable says something about a system."""
+    if name not in TABLE:
+        return True
+    output = TABLE[name]
+    return output.wanted(general) and bool(np.isin(laws_of(general), output.laws).any())
+
+
+def is_of_masses(name: str) -> bool:
+    """Whether an output has a value for every mass."""
+    return "dof" in LABELS[name].dims
+
+
+def depends_on_places(name: str, general: ContactSystem) -> bool:
+    """Whether an output depends on the places of contacts at rest."""
+    return bool(np.isin(laws_of(general), TABLE[name].placed).any())
+
+
+def output_values(name: str, system: System, cells: Cells) -> np.ndarray:
+    """Values of an output for every cell, (n_mu, n_r, n_beta), and contact, (..., N), or mass, (..., n)."""
+    general, output = general_of(system), TABLE[name]
+    laws, count = laws_of(general), general.count
+    rests = cells.contact_regime == regimes.PERMANENT_STICKING
+    low, high = cells.lowest, cells.highest
+    values = output.values(
+        Solved(
+            cells, laws, rests, (low[..., :count], high[..., :count]), (low[..., count:], high[..., count:])
+        )
+    )
+    if name in PER_CONTACT and (output.laws != _ALL or output.moving):
+        without = ~np.isin(laws, output.laws) | (rests & output.moving)
+        values = np.where(without, np.nan, values)
+    return values.astype(LABELS[name].dtype, copy=False)
+
+
+def allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:
+    """Allocate unresolved cells."""
+
+    def unresolved(name: str, *further: int) -> np.ndarray:
+        return np.full((*shape, *further), LABELS[name].unresolved, LABELS[name].dtype)
+
+    values = {name: unresolved(name) for name in Cells._fields if name in LABELS and name not in PER_CONTACT}
+    values["contact_regime"] = unresolved("contact_regime", contacts)
+    values["numbers"] = np.full((len(NUMBERS), *shape, contacts), np.nan)
+    values["lowest"], values["highest"] = (np.full((*shape, contacts + masses), np.nan) for _ in range(2))
+    return Cells(**values)

@@ -14,7 +14,12 @@ from ..errors import InputError
 #: 50 digits: an error of 1e-50 is no part of any double.
 PI = Fraction("3.14159265358979323846264338327950288419716939937510")
 
-_INCH, _POUND, _GRAVITY = Fraction("0.0254"), Fraction("0.45359237"), Fraction("9.80665")
+_INCH, _FOOT, _POUND, _GRAVITY = (
+    Fraction("0.0254"),
+    Fraction("0.3048"),
+    Fraction("0.45359237"),
+    Fraction("9.80665"),
+)
 _POUND_FORCE = _POUND * _GRAVITY
 
 
@@ -29,17 +34,19 @@ class Unit(NamedTuple):
 #: Units by their spelling; the first of its kind is used to report values of that kind.
 UNITS = {
     "Hz": Unit("frequency", Fraction(1), "Hz"),
-    "kHz": Unit("frequency", Fraction(1000)),
+    "kHz": Unit("frequency", Fraction(1000), "kHz"),
     "rad/s": Unit("frequency", 1 / (2 * PI), "rad_s"),
-    "rpm": Unit("frequency", Fraction(1, 60)),
+    "rpm": Unit("frequency", Fraction(1, 60), "rpm"),
     "N": Unit("force", Fraction(1), "N"),
-    "mN": Unit("force", Fraction(1, 1000)),
-    "kN": Unit("force", Fraction(1000)),
-    "lbf": Unit("force", _POUND_FORCE),
+    "mN": Unit("force", Fraction(1, 1000), "mN"),
+    "kN": Unit("force", Fraction(1000), "kN"),
+    "lbf": Unit("force", _POUND_FORCE, "lbf"),
     "mm": Unit("length", Fraction(1, 1000), "mm"),
     "m": Unit("length", Fraction(1), "m"),
     "um": Unit("length", Fraction(1, 10**6), "um"),
-    "in": Unit("length", _INCH),
+    "in": Unit("length", _INCH, "in"),
+    "cm": Unit("length", Fraction(1, 100), "cm"),
+    "ft": Unit("length", _FOOT, "ft"),
     "kg": Unit("mass", Fraction(1)),
     "lb": Unit("mass", _POUND),
     "N/m": Unit("stiffness", Fraction(1)),
@@ -49,19 +56,38 @@ UNITS = {
     "lbf/in": Unit("stiffness", _POUND_FORCE / _INCH),
     "m/s": Unit("velocity", Fraction(1), "m_s"),
     "mm/s": Unit("velocity", Fraction(1, 1000), "mm_s"),
+    "cm/s": Unit("velocity", Fraction(1, 100), "cm_s"),
+    "in/s": Unit("velocity", _INCH, "in_s"),
     "m/s^2": Unit("acceleration", Fraction(1), "m_s2"),
     "mm/s^2": Unit("acceleration", Fraction(1, 1000), "mm_s2"),
     "g": Unit("acceleration", _GRAVITY, "g"),
+    "cm/s^2": Unit("acceleration", Fraction(1, 100), "cm_s2"),
+    "in/s^2": Unit("acceleration", _INCH, "in_s2"),
     "J": Unit("work", Fraction(1)),
     "mJ": Unit("work", Fraction(1, 1000)),
     "s": Unit("time", Fraction(1), "s"),
     "ms": Unit("time", Fraction(1, 1000), "ms"),
+    "us": Unit("time", Fraction(1, 10**6), "us"),
+    "min": Unit("time", Fraction(60), "min"),
     "deg": Unit("angle", PI / 180, "deg"),
     "rad": Unit("angle", Fraction(1), "rad"),
+    "mrad": Unit("angle", Fraction(1, 1000), "mrad"),
 }
 
-#: Other ways to write one: the two signs for micro, the raised two.
-_ALIASES = {"\u00b5m": "um", "\u03bcm": "um", "m/s\u00b2": "m/s^2"}
+#: Other ways to write one: the two signs for micro, the gal of seismology, the second, the degree.
+_ALIASES = {
+    "\u00b5m": "um", "\u03bcm": "um", "\u00b5s": "us", "\u03bcs": "us", "Gal": "cm/s^2", "gal": "cm/s^2",
+    "sec": "s", "\u00b0": "deg",
+}  # fmt: skip
+
+#: Accelerations may be written with a raised two, with a bare one, or by powers.
+_ALIASES |= {
+    name.replace("/s^2", power): name
+    for name in UNITS
+    if name.endswith("/s^2")
+    for power in ("/s\u00b2", "/s2", "/s**2", "/s/s", "/sec^2", "/sec2")
+}
+_ALIASES |= {name.replace("/s", "/sec"): name for name in UNITS if name.endswith("/s")}
 
 #: Units that names of columns may end in, by how they do.
 COLUMN_UNITS = {unit.column: unit for unit in UNITS.values() if unit.column}

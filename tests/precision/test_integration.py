@@ -69,9 +69,12 @@ def test_a_motion_that_stops():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"x_unit": "N"}, "x_unit must be one of mm, m, um, in, m/s, mm/s, m/s\\^2, mm/s\\^2, g; got 'N'"),
+        (
+            {"x_unit": "N"},
+            "x_unit must be one of mm, m, um, in, cm, ft, m/s, mm/s, cm/s, in/s, m/s\\^2, .*; got 'N'",
+        ),
         ({"base_unit": "s"}, "base_unit must be one of mm"),
-        ({"unit": "g"}, "unit must be one of mm, m, um, in; got 'g'"),
+        ({"unit": "g"}, "unit must be one of mm, m, um, in, cm, ft; got 'g'"),
     ],
 )
 def test_bad_units(arguments, message):

@@ -295,7 +295,7 @@ def test_amplitudes_of_a_mass_under_a_force(rig, capsys):
         ([*LINES[:3], "1,2.5,20,-1.2,1.5"], HEAD, "column amplitude_ratio, line 5 must be > 0; got -1.2"),
         (LINES, HEAD.replace("_deg", ""), "column phase_lag: its name must end in a unit, _deg, _rad"),
         (LINES, HEAD.replace("_deg", "_grad"), "column phase_lag_grad: its name must end"),
-        (LINES, HEAD.replace("frequency_Hz", "f"), "column frequency_Hz (suffixes: _Hz, _rad_s) is missing"),
+        (LINES, HEAD.replace("frequency_Hz", "f"), "column frequency_Hz (suffixes: _Hz, _kHz, _rad_s"),
         ([columns(line, 0, 1) for line in LINES], "set,frequency_Hz", "column phase_lag_deg (suffixes"),
         ([*LINES[:3], "1,2.5,nan,1.2,1.5"], HEAD, "phase_lag_deg, line 5 must be a finite number; got 'nan'"),
         (LINES, HEAD.replace("base_mm", "force_N"), "system.excitation must be force for a file with"),

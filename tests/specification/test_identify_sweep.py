@@ -128,7 +128,7 @@ def test_bad_rows(rig, capsys, lines, message):
             "frequency_Hz,ratio",
             "column amplitude_ratio_1 is missing; the file has",
         ),
-        ("frequency_rpm,amplitude_ratio_1", "column frequency_rpm: its name must end in a unit, _Hz"),
+        ("frequency_mm,amplitude_ratio_1", "column frequency_mm: its name must end in a unit, _Hz"),
     ],
 )
 def test_bad_names(rig, capsys, head, message):

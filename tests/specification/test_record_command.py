@@ -217,7 +217,7 @@ def test_bad_records(rig, capsys, measured_record, change, message):
     [
         ({"base": [1.0, 2.0]}, "base must be 731 numbers, one per time"),
         ({"x": np.full(731, np.nan)}, "x must be finite; got nan at index 0"),
-        ({"unit": "inch"}, "unit must be one of mm, m, um; got 'inch'"),
+        ({"unit": "inch"}, "unit must be one of mm, m, um, in, cm, ft; got 'inch'"),
         ({"contact": "wall"}, "contact must be one of fixed-wall, joined-base-wall; got 'wall'"),
         ({"damping_reference": "wall"}, "damping_reference must be one of ground, base; got 'wall'"),
         ({"stiffness": -1.0}, "stiffness must be > 0; got -1"),

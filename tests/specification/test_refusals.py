@@ -515,7 +515,7 @@ identify rig.toml --set data.file=none.csv
 identify rig.toml --set data.file=1
     data.file must be the path of a file of measured data; got 1
 identify rig.toml --set data.file=rig.doc
-    data.file must end in .csv, .npz, .mat, .uff, .unv, .tdms; got rig.doc
+    data.file must end in .csv, .txt, .tsv, .dat, .asc, .npz, .mat, .json, .uff, .unv, .tdms; got rig.doc
 identify rig.toml --set data.file=unsorted.csv
     file unsorted.csv, column time_s, line 4 must be > 0.2, the time of the previous row; got 0.1 (sort the rows)
 identify rig.toml --set data.file=ragged.csv
@@ -523,9 +523,9 @@ identify rig.toml --set data.file=ragged.csv
 identify rig.toml --set data.file=words.csv
     file words.csv, column x_mm, line 3 must be a finite number; got 'high' (1 of 2 rows have none; at most 1% may be ignored)
 identify rig.toml --set data.file=bare.csv
-    file bare.csv, column time: its name must end in a unit, _s, _ms; got none
+    file bare.csv, column time: its name must end in a unit, _s, _ms, _us, _min; got none (or write columns = { time = { name = "time", unit = "s" } } below [data])
 identify rig.toml --set data.fil=a.csv
-    data.kind = 'free-decay': unknown key 'data.fil' (did you mean file?); valid: kind, file, columns, missing, window
+    data.kind = 'free-decay': unknown key 'data.fil' (did you mean file?); valid: kind, file, columns, decimal, missing, window
 identify rig.toml --set data.missing=ignore
     data.missing must be one of refuse, drop; got 'ignore'
 identify rig.toml --set data.columns=x
@@ -533,7 +533,7 @@ identify rig.toml --set data.columns=x
 identify rig.toml --set 'data.columns={y="x_mm"}'
     unknown key 'data.columns.y'; valid: time, x
 identify rig.toml --set 'data.columns={x="y_mm"}'
-    cannot read free-decay.csv: column y_mm (suffixes: _mm, _m, _um) is missing, named by data.columns.x; the file has time_s, x_mm (did you mean x_mm?)
+    cannot read free-decay.csv: column y_mm (suffixes: _mm, _m, _um, _in, _cm, _ft) is missing, named by data.columns.x; the file has time_s, x_mm (did you mean x_mm?)
 identify rig.toml --set data.window=[1]
     file free-decay.csv, columns time_s and x_mm: window must be two times; got [1]
 identify rig.toml --set data.window=[50,60]
@@ -639,7 +639,7 @@ identify sweep.toml --set system.excitation=shaker
 identify sweep.toml --set data.sigma_amplitude=0
     file sweep.csv, columns frequency_Hz, amplitude_ratio_1: data.sigma_amplitude must be > 0; got 0
 identify sweep.toml --set 'data.window=[1, 2]'
-    data.kind = 'sweep': unknown key 'data.window' (did you mean kind?); valid: kind, file, columns, missing, sigma_amplitude, sigma_phase_deg
+    data.kind = 'sweep': unknown key 'data.window' (did you mean kind?); valid: kind, file, columns, decimal, missing, sigma_amplitude, sigma_phase_deg
 identify sweep.toml --set known.mu=1
     data.kind = 'sweep': unknown key 'known.mu'; valid: f_k1m1, zeta_1, gamma, kappa, zeta_2, mass_ratio_2, mass_ratio_3, stiffness_ratio_2, stiffness_ratio_3, zeta_3, mass_ratio_4, stiffness_ratio_4, zeta_4, mass_ratio_5, stiffness_ratio_5, zeta_5
 identify record.toml --set system.contact=between-masses
@@ -749,7 +749,7 @@ fm.identify.free_decay(TIME, np.sin(1e3 * TIME))
 fm.identify.free_decay(TIME, np.exp(TIME) * np.cos(20 * TIME))
     cannot fit x as a free decay: its amplitude grows (swings grow from 2.541 to 94.18); choose a window of one decay
 fm.identify.free_decay(TIME, DECAY, unit="inch")
-    unit must be one of mm, m, um; got 'inch'
+    unit must be one of mm, m, um, in, cm, ft; got 'inch'
 fm.identify.free_decay(TIME, DECAY, known={"mass": 1.0})
     known must be one of f_n, zeta, x_F, X0, t0, centre; got 'mass'
 fm.identify.free_decay(TIME, DECAY, known={"zeta": -0.1})
@@ -815,7 +815,7 @@ fm.identify.joint([(TIME, DECAY), (TIME,)])
 fm.identify.joint([(TIME, DECAY)] * 2, labels=["a", "a"])
     labels must be 2 different names, one for each of data; got ['a', 'a']
 fm.identify.displacements(TIME, DECAY, DECAY, x_unit="kg")
-    x_unit must be one of mm, m, um, in, m/s, mm/s, m/s^2, mm/s^2, g; got 'kg'
+    x_unit must be one of mm, m, um, in, cm, ft, m/s, mm/s, cm/s, in/s, m/s^2, mm/s^2, g, cm/s^2, in/s^2; got 'kg'
 fm.identify.friction_ratio(-1.0, 10.0)
     r must be > 0; got -1
 fm.identify.friction_ratio([1.0, 2.0], 10.0)

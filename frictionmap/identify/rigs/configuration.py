@@ -18,8 +18,10 @@ from ...units.axes import rounded
 from ...units.quantities import quantity
 from ...units.table import UNITS
 from ..parameters import checked_free
+from ..tables.choices import checked_choices, chosen
 from ..tables.columns import MISSING
-from ..tables.files import read_table
+from ..tables.files import FORMS, read_table
+from ..tables.text_files import DECIMALS
 from .decay import FREE_DECAY
 from .forced import FORCED
 from .joint import JOINT, checked_data, data_paths, fit_together
@@ -35,7 +37,7 @@ KINDS = {"free-decay": FREE_DECAY, "forced": FORCED, "record": RECORD, "sweep": 
 JOINT_NAME = "joint"
 
 #: Endings of what is data, not a configuration.
-_DATA = (".csv", ".mat", ".npz", ".txt", ".uff", ".unv", ".tdms", ".xlsx")
+_DATA = (*FORMS, ".xlsx")
 
 
 def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
@@ -61,12 +63,15 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
     if not isinstance(file, str) or not file:
         given = checks.one_line(file) if "file" in data else "nothing"
         raise InputError(f"data.file must be the path of a file of measured data; got {given}")
+    decimal = data.get("decimal")
+    choices = checked_choices(data.get("columns", {}), "data.columns")
     missing = checks.choice(data.get("missing", MISSING[0]), "data.missing", MISSING)
     values = {key: _known_number(value, key) for key, value in known.items()}
     free = _checked_free(fit.get("free"), values, kind.parameters)
     source = path.parent / file
     return Rig(
-        _title(tree, Path(file).stem), name, source, _names(data.get("columns", {})),
+        _title(tree, Path(file).stem), name, source, {}, choices,
+        None if decimal is None else checks.choice(decimal, "data.decimal", DECIMALS),
         _chosen(data, kind.data), missing,
         _table(tree, "system"), values, free, _chosen(fit, kind.fit), text, path.stem, (path, source),
     )  # fmt: skip
@@ -81,7 +86,7 @@ def _joint_rig(tree: Mapping[str, object], text: str, path: Path) -> Rig:
     free = _checked_free(fit.get("free"), values, JOINT.parameters)
     files = data_paths(parts, path.parent)
     return Rig(
-        _title(tree, path.stem), JOINT_NAME, files[0], {}, {"parts": parts}, MISSING[0],
+        _title(tree, path.stem), JOINT_NAME, files[0], {}, {}, None, {"parts": parts}, MISSING[0],
         _table(tree, "system"),
         values, free, _chosen(fit, JOINT.fit), text, path.stem, (path, *files),
     )  # fmt: skip
@@ -106,7 +111,8 @@ def identify(rig: Rig) -> xr.Dataset:
         ds = fit_together(rig)
         ds.attrs |= {"title": rig.title, "config": rig.text}
         return ds
-    table = read_table(rig.file)
+    table, names = chosen(read_table(rig.file, rig.decimal), rig.choices)
+    rig = rig._replace(columns=names)
     ds = KINDS[rig.kind].identify(rig, table)
     ds.attrs |= {
         "title": rig.title, "config": rig.text, "data_file": rig.file.as_posix(), "data_form": table.form,
@@ -145,7 +151,7 @@ def _checked_kind(tree: Mapping[str, object], data: Mapping[str, object]) -> str
 def _check_keys(tree: Mapping[str, object], name: str, kind: Kind) -> None:
     """Refuse unknown keys of the kind; [system] is checked as in maps, where it is used."""
     sections = {
-        "data": ("kind", "file", "columns", "missing", *kind.data),
+        "data": ("kind", "file", "columns", "decimal", "missing", *kind.data),
         "known": (*kind.parameters, *kind.known),
         "fit": ("free", *kind.fit),
     }
@@ -187,15 +193,6 @@ def _known_number(value: object, key: str) -> float:
             raise InputError(f"known.{key} must be finite in {unit}; got {value!r}")
         value = number
     return checks.number(value, f"known.{key}")
-
-
-def _names(columns: object) -> dict[str, str]:
-    if not isinstance(columns, Mapping) or not all(isinstance(name, str) for name in columns.values()):
-        raise InputError(
-            f'data.columns must be a table of column names, such as {{ time = "time_s", x = "x_mm" }}; '
-            f"got {checks.one_line(columns)}"
-        )
-    return dict(columns)
 
 
 def _chosen(table: Mapping[str, object], keys: Sequence[str]) -> dict[str, object]:

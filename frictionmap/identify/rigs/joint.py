@@ -13,8 +13,10 @@ from ...files.config import unknown_key
 from ...units.table import conversion
 from ..joint_fit.joint import KNOWN, joint
 from ..signals.samples import within
+from ..tables.choices import checked_choices, chosen
 from ..tables.columns import MISSING, check_increasing, pick_columns
 from ..tables.files import Table, read_table
+from ..tables.text_files import DECIMALS
 from .record import one_mass_on_base
 from .rig import Kind, Rig
 
@@ -25,7 +27,7 @@ JOINED = {
 }
 
 #: Keys of each table [[data]].
-DATA_KEYS = ("kind", "file", "label", "columns", "missing", "window")
+DATA_KEYS = ("kind", "file", "label", "columns", "decimal", "missing", "window")
 
 #: The unit of all results.
 _UNIT = "mm"
@@ -59,14 +61,14 @@ def _checked(table: object, name: str, label: str) -> dict[str, object]:
         if key not in DATA_KEYS:
             raise unknown_key(key, name, DATA_KEYS)
     kind = checks.choice(table.get("kind"), f"{name}.kind", tuple(JOINED))
-    result = {"label": label, "columns": {}, "missing": MISSING[0], "window": None, **table}
+    result = {"label": label, "columns": {}, "decimal": None, "missing": MISSING[0], "window": None, **table}
     for key in ("file", "label"):
         if not isinstance(result.get(key), str) or not result[key]:
             raise InputError(f"{name}.{key} must be text; got {checks.one_line(result.get(key))}")
-    columns = result["columns"]
-    if not isinstance(columns, Mapping) or not all(isinstance(one, str) for one in columns.values()):
-        raise InputError(f"{name}.columns must be a table of column names; got {checks.one_line(columns)}")
-    for role in columns:
+    result["columns"] = checked_choices(result["columns"], f"{name}.columns")
+    if result["decimal"] is not None:
+        checks.choice(result["decimal"], f"{name}.decimal", DECIMALS)
+    for role in result["columns"]:
         if role not in JOINED[kind]:
             raise unknown_key(role, f"{name}.columns", tuple(JOINED[kind]))
     checks.choice(result["missing"], f"{name}.missing", MISSING)
@@ -78,7 +80,10 @@ def fit_together(rig: Rig) -> xr.Dataset:
     contact, reference = one_mass_on_base(rig)
     parts: Any = rig.data["parts"]
     remarks: list[str] = []
-    data = [_arrays(read_table(path), part, remarks) for path, part in zip(rig.files[1:], parts, strict=True)]
+    data = [
+        _arrays(read_table(path, part["decimal"]), part, remarks)
+        for path, part in zip(rig.files[1:], parts, strict=True)
+    ]
     known = dict(rig.known)
     stiffness = known.pop("stiffness", None)
     options: dict[str, Any] = dict(rig.fit)
@@ -97,7 +102,9 @@ def fit_together(rig: Rig) -> xr.Dataset:
 def _arrays(table: Table, part: Mapping[str, Any], remarks: list[str]) -> list[np.ndarray]:
     """Times [s] and displacements [mm] within the window."""
     wanted = JOINED[part["kind"]]
-    picked = pick_columns(table, wanted, part["columns"], part["missing"])
+    table, names = chosen(table, part["columns"])
+    picked = pick_columns(table, wanted, names, part["missing"])
+    remarks += [f"{part['label']}: {remark}" for remark in (table.remark, picked.remark) if remark]
     check_increasing(table, picked.columns["time"], picked.rows)
     if picked.dropped:
         remarks.append(f"{part['label']}: {picked.dropped} rows have no number and were ignored")

@@ -8,11 +8,13 @@ from typing import Any
 from ...files.json_schema import DIALECT, described, keyed_table
 from ...files.keys import GENERAL_KEYS, KEYS, Key, either, number, several, table, whole, with_unit, word
 from ...model.system import DAMPING_REFERENCES
-from ...units.table import UNITS, units_of
+from ...units.table import COLUMN_UNITS, UNITS, units_of
 from ..chain.data import MOST_MASSES
 from ..chain.sweep import COSTS
 from ..statistics.robust import LOSSES
 from ..tables.columns import MISSING
+from ..tables.headings import unit_name
+from ..tables.text_files import DECIMALS
 from ..time_series.motion import CONTACTS
 from .configuration import JOINT_NAME, KINDS
 from .joint import DATA_KEYS, JOINED, JOINT
@@ -31,16 +33,28 @@ _TIMES = several(number(), 2, maxItems=2)
 
 _TITLE = KEYS[""][0]._replace(meaning="title of plots; default: name of the data file")
 
+#: A column by name, with its unit and its calibration: scale * (number in the file) + offset, in the unit.
+_COLUMN = table(
+    {
+        "name": {"type": "string", "minLength": 1},
+        "unit": word(*(unit_name(one) for one in COLUMN_UNITS)),
+        "scale": number(),
+        "offset": number(),
+    }
+)
+
 _DATA = (
     Key("kind", "kind of measurement", word(*KINDS)),
     Key("file", "data file, relative to this file", {"type": "string", "minLength": 1}, example='"data.csv"'),
     Key(
         "columns",
         "names of columns; default: names like those in the example, which end in units",
-        {"type": "object", "additionalProperties": {"type": "string"}},
+        {"type": "object", "additionalProperties": either({"type": "string"}, _COLUMN)},
         example='{ time = "time_s", x = "x_mm" }',
-        words="a table of column names",
+        words='a table of column names, or of { name = "Weg", unit = "mm", scale = 4.0, offset = 2.5 }',
     ),
+    Key("decimal", "decimal sign of a text file; default: as its numbers show it", word(*DECIMALS),
+        example='","'),
     Key("missing", "rows without a number: refuse, or ignore up to 1 % of the rows", word(*MISSING),
         MISSING[0]),
     Key("window", "time window to be fitted, s", _TIMES, example="[0.5, 4.0]", words="[begin, end]"),
@@ -150,7 +164,7 @@ def _with_example(key: Key, kind: str) -> Key:
 def rig_keys(kind: str) -> dict[str, tuple[Key, ...]]:
     """The keys of each table, for a kind of data."""
     of = KINDS[kind]
-    data = ("kind", "file", "columns", "missing", *of.data)
+    data = ("kind", "file", "columns", "decimal", "missing", *of.data)
     known = (*of.parameters, *of.known)
     fit = (*of.fit, *(("free",) if of.parameters else ()))
     tables = {

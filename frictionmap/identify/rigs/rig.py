@@ -7,6 +7,7 @@ from typing import NamedTuple
 import xarray as xr
 
 from ...files.config import unknown_key
+from ..tables.choices import Choice
 from ..tables.columns import Columns, unused_columns
 from ..tables.files import Table
 
@@ -17,7 +18,9 @@ class Rig(NamedTuple):
     title: str
     kind: str
     file: Path
-    columns: Mapping[str, str]  # names in the file, by what the column is
+    columns: Mapping[str, str]  # names in the file, by what the column is, once the file is read
+    choices: Mapping[str, Choice]  # what [data] says about columns
+    decimal: str | None  # decimal sign of a text file; None: as its numbers show it
     data: Mapping[str, object]  # what else [data] says
     missing: str
     system: Mapping[str, object]
@@ -60,7 +63,10 @@ def with_remarks(ds: xr.Dataset, table: Table, picked: Columns, known_of: Collec
     known_of : columns that the configuration leaves out itself, or that are no numbers; they are not named
     """
     used = {column.name for column in picked.columns.values()} | set(known_of)
-    remarks = (_dropped_rows(table, picked), unused_columns(table, used), ds.attrs["warnings"])
+    remarks = (
+        table.remark, picked.remark, _dropped_rows(table, picked), unused_columns(table, used),
+        ds.attrs["warnings"],
+    )  # fmt: skip
     ds.attrs["warnings"] = "; ".join(filter(None, remarks))
     return ds
 

@@ -1,5 +1,6 @@
 """Columns of a table by role, with their units; no unit is guessed, no value is repaired."""
 
+import json
 from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
@@ -7,8 +8,11 @@ import numpy as np
 
 from ... import checks
 from ...errors import InputError
-from ...units.table import COLUMN_UNITS, ending, suffixes
+from ...units.table import COLUMN_UNITS, suffixes
+from .even_times import evened
 from .files import Table
+from .headings import ELECTRICAL, heading, unit_name, words_of
+from .text_files import number
 
 #: Treatment of values that are not numbers.
 MISSING = ("refuse", "drop")
@@ -34,6 +38,7 @@ class Columns(NamedTuple):
     columns: dict[str, Column]
     rows: np.ndarray  # of the table
     dropped: int
+    remark: str = ""  # what was made of the times, or empty
 
 
 def pick_columns(
@@ -62,7 +67,11 @@ def pick_columns(
         _refuse(table, found, bad, missing)
     rows = np.flatnonzero(~bad)
     kept = {role: column._replace(values=column.values[rows]) for role, column in found.items()}
-    return Columns(kept, rows, int(bad.sum()))
+    remark = ""
+    if wanted.get("time") == "time":
+        times, remark = evened(kept["time"].name, kept["time"].values)
+        kept["time"] = kept["time"]._replace(values=times)
+    return Columns(kept, rows, int(bad.sum()), remark)
 
 
 def columns_like(
@@ -76,7 +85,7 @@ def columns_like(
         return [names[role]]
     others = set(names.values())
     free = [name for name in table.columns if name not in others]
-    return _named_like(free, role, suffixes(measures), sure)
+    return _named_like(table, free, role, suffixes(measures), sure)
 
 
 def unused_columns(table: Table, used: Collection[str]) -> str:
@@ -123,30 +132,69 @@ def _find(table: Table, role: str, names: Mapping[str, str], measures: str) -> C
     candidates = columns_like(table, role, measures, names)
     if not candidates:
         raise InputError(
-            f"cannot read {table.file}: {wanted} is missing; {has}; name it in data.columns.{role}"
+            f"cannot read {table.file}: {wanted} is missing; {has}; {_remedy(table, role, names, valid)}"
         )
     if len(candidates) > 1:
         raise InputError(
             f"cannot read {table.file}: several columns may be {role}, {', '.join(candidates)}; "
-            f"choose one with data.columns.{role}"
+            f"choose one with data.columns.{role}, such as {_line(role, candidates[0])}"
         )
     column = candidates[0]
-    unit = _unit(table, column, valid) if valid else "1"
+    unit = _unit(table, column, role, valid) if valid else "1"
     return Column(column, unit, table.columns[column])
 
 
-def _unit(table: Table, column: str, valid: Sequence[str]) -> str:
-    """The unit that the name of a column ends in."""
-    unit = ending(column)
-    if f"_{unit}" not in valid:
-        what = repr(unit) if unit else "none"
-        raise InputError(
-            f"file {table.file}, column {column}: its name must end in a unit, {', '.join(valid)}; got {what}"
-        )
-    return unit
+def _line(role: str, name: str, more: str = "") -> str:
+    """The line of [data] that names a column."""
+    value = f"{{ name = {_quoted(name)}, {more} }}" if more else _quoted(name)
+    return f"columns = {{ {role} = {value} }}"
 
 
-def _named_like(columns: Sequence[str], role: str, valid: Sequence[str], sure: bool = False) -> list[str]:
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)  # a text of TOML
+
+
+def _remedy(table: Table, role: str, names: Mapping[str, str], valid: Sequence[str]) -> str:
+    """What to write where no column is named as its role: the line that names one."""
+    if role == "time" and any(f"_{table.unit(name)}" in suffixes("frequency") for name in table.columns):
+        return "it has frequencies, so it is a spectrum or a response; export the time history"
+    if table.columns and all(np.isfinite(number(name, comma=True)) for name in table.columns):
+        return "these are no names; write a line of names above the numbers, such as time_s,x_mm"
+    free = [name for name in table.columns if name not in names.values()]
+    fit = [name for name in free if f"_{table.unit(name)}" in valid] if valid else []
+    if fit:
+        return f"name it in data.columns.{role}, such as {_line(role, fit[0])}"
+    free = sorted(
+        (name for name in free if not table.unit(name) and np.isfinite(table.columns[name]).any()),
+        key=lambda name: not name.lower().startswith(role[0]),
+    )
+    if free and valid:
+        line = _line(role, free[0], _unit_key(valid[0]))
+        return f"name it in data.columns.{role}, with its unit, such as {line}"
+    return f"name it in data.columns.{role}"
+
+
+def _unit_key(suffix: str) -> str:
+    return f'unit = "{unit_name(suffix[1:])}"'
+
+
+def _unit(table: Table, column: str, role: str, valid: Sequence[str]) -> str:
+    """The unit of a column, which its name, the file or the configuration says."""
+    unit = table.unit(column)
+    if f"_{unit}" in valid:
+        return unit
+    what = repr(unit) if unit else "none"
+    calibration = "scale = 1.0, " if unit in ELECTRICAL else ""
+    endings = f"its name must end in a unit, {', '.join(valid)}"
+    line = f"or write {_line(role, column, calibration + _unit_key(valid[0]))} below [data]"
+    if calibration:
+        line += f", with the {unit_name(valid[0][1:])} per {unit} of the sensor as scale"
+    raise InputError(f"file {table.file}, column {column}: {endings}; got {what} ({line})")
+
+
+def _named_like(
+    table: Table, columns: Sequence[str], role: str, valid: Sequence[str], sure: bool = False
+) -> list[str]:
     """Columns of a role, by exact name with a unit, or by a name that begins with the role.
 
     The latter has a unit of what is measured at its end, or, unless it must be sure, nothing but one word or
@@ -154,15 +202,22 @@ def _named_like(columns: Sequence[str], role: str, valid: Sequence[str], sure: b
     """
     if not valid:
         return [name for name in columns if name == role]
-    exact = [name for name in columns if name in {f"{role}{unit}" for unit in valid}]
+    words = words_of(role)
+    stems = {name: heading(name).stem.lower() for name in columns}
+    measured = {name: f"_{table.unit(name)}" in valid for name in columns}
+    exact = [name for name in columns if stems[name] in words and measured[name]]
     if exact:
         return exact
-    like = [name for name in columns if name == role or name.startswith(f"{role}_")]
-    measured = [name for name in like if f"_{ending(name)}" in valid]
-    if measured or sure:
-        return measured
-    rests = {name: name.removeprefix(role).removeprefix("_") for name in like}
-    return [name for name, rest in rests.items() if "_" not in rest or rest in COLUMN_UNITS]
+    like = [name for name in columns if stems[name] in words or name.lower().startswith(f"{role}_")]
+    certain = [name for name in like if measured[name]]
+    if certain or sure:
+        return certain
+    rests = {name: name[len(role) :].removeprefix("_") for name in like}
+    return [
+        name
+        for name, rest in rests.items()
+        if stems[name] in words or "_" not in rest or rest in COLUMN_UNITS
+    ]
 
 
 def _check_lengths(table: Table, found: Mapping[str, Column]) -> None:

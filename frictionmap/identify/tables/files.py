@@ -1,19 +1,23 @@
 """Files of measured data as tables of named columns: CSV, MAT, NPZ, and those of `lab_files`."""
 
-import csv
-import re
+import json
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...errors import InputError
 from ...mat_files import read_mat
+from .headings import heading
 from .lab_files import read_tdms, read_uff
+from .stamps import is_stamp, seconds
+from .text_files import number, read_text
 
-_DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*")
+#: Endings of text files, and of all files that are read.
+_TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc")
+FORMS = (*_TEXT, ".npz", ".mat", ".json", ".uff", ".unv", ".tdms")
 
 #: Arrays in a MAT or NPZ file.
 Arrays = dict[str, np.ndarray]
@@ -28,6 +32,13 @@ class Table(NamedTuple):
     first: int  # where the first row is
     row_word: str  # "line" or "index"
     form: str  # of the file, in words
+    units: Mapping[str, str] = {}  # of columns whose names do not say them
+    aliases: Mapping[str, str] = {}  # other names of columns, such as 1:X+
+    remark: str = ""  # what of the file was not read, or empty
+
+    def unit(self, name: str) -> str:
+        """The unit of a column as its name says it, or as the file or the configuration does elsewhere."""
+        return self.units.get(name) or heading(name).unit
 
     def place(self, name: str, row: int) -> str:
         """Describe the place of a value."""
@@ -38,8 +49,10 @@ class Table(NamedTuple):
         return self.texts[name][row] if name in self.texts else f"{self.columns[name][row]}"
 
 
-def read_table(path: Path) -> Table:
+def read_table(path: Path, decimal: str | None = None) -> Table:
     """Read a file of measured data by its ending.
+
+    decimal : the decimal sign of a text file; None: as the numbers show it
 
     Raises
     ------
@@ -47,11 +60,11 @@ def read_table(path: Path) -> Table:
         There is no such file, it is of no known form, or its rows differ in length; one line with the file.
     """
     forms: dict[str, Callable[[Path], Table]] = {
-        ".csv": _read_csv,
+        **dict.fromkeys(_TEXT, lambda path: _read_text(path, decimal)),
         ".npz": _read_npz,
         ".mat": lambda path: _from_arrays(path, *read_mat(path)),
-        ".uff": lambda path: _from_arrays(path, read_uff(path), "UFF"),
-        ".unv": lambda path: _from_arrays(path, read_uff(path), "UFF"),
+        ".json": _read_json,
+        **dict.fromkeys((".uff", ".unv"), _read_universal),
         ".tdms": lambda path: _from_arrays(path, read_tdms(path), "TDMS"),
     }
     read = forms.get(path.suffix.lower())
@@ -63,53 +76,19 @@ def read_table(path: Path) -> Table:
         raise InputError(f"cannot read {path}: {error.strerror or error}; check data.file") from None
 
 
-def _read_csv(path: Path) -> Table:
-    content = path.read_bytes()
-    if b"\0" in content:
-        raise InputError(f"cannot read {path}: it contains zero bytes and is not text; save it as UTF-8")
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:  # what measuring programs of Windows write
-        text = content.decode("cp1252", errors="replace")
-    lines = text.splitlines()
-    header = next((k for k, line in enumerate(lines) if line.strip() and not line.startswith("#")), None)
-    if header is None:
-        raise InputError(f"cannot read {path}: it is empty; the first line must name the columns")
-    delimiter = next((mark for mark in ";\t" if mark in lines[header]), ",")
-    rows = list(csv.reader(lines[header:], delimiter=delimiter))
-    while len(rows) > 1 and not "".join(rows[-1]).strip():
-        rows.pop()
-    names = [name.strip() for name in rows[0]]
-    _check_rows(path, names, rows, header + 1)
-    comma = delimiter != "," and any(_DECIMAL_COMMA.fullmatch(field) for row in rows[1:] for field in row)
-    texts = {name: [row[k].strip() for row in rows[1:]] for k, name in enumerate(names)}
-    columns = {name: np.array([_number(field, comma) for field in fields]) for name, fields in texts.items()}
-    separator = {",": "comma", ";": "semicolon", "\t": "tab"}[delimiter]
-    form = f"CSV, {separator} between columns, decimal {'comma' if comma else 'point'}"
-    return Table(path, columns, texts, header + 2, "line", form)
+def _read_text(path: Path, decimal: str | None = None) -> Table:
+    """A table of text: numbers, and columns of stamps as seconds."""
+    found = read_text(path, decimal)
+    texts = {name: [row[k] for row in found.rows] for k, name in enumerate(found.names)}
+    columns = {name: _values(name, fields, found.decimal) for name, fields in texts.items()}
+    units = {name: "s" for name, fields in texts.items() if fields and is_stamp(fields[0])}
+    return Table(path, columns, texts, found.first, "line", found.form, units, remark=found.remark)
 
 
-def _check_rows(path: Path, names: list[str], rows: list[list[str]], line: int) -> None:
-    """Refuse names that stand twice, and rows of another length."""
-    twice = next((name for name in names if names.count(name) > 1), None)
-    # numbers twice: the file has no names at all, which the search for columns reports
-    if twice is not None and not np.isfinite(_number(twice, comma=False)):
-        raise InputError(f"cannot read {path}, line {line}: column names must differ; got {twice!r} twice")
-    for offset, row in enumerate(rows[1:], start=1):
-        if len(row) != len(names):
-            raise InputError(
-                f"cannot read {path}, line {line + offset}: expected {len(names)} values, one per column; "
-                f"got {len(row)}"
-            )
-
-
-def _number(field: str, comma: bool) -> float:
-    """The number in a field; NaN if there is none."""
-    try:
-        # float() takes 1_000 as well, which no data logger means
-        return float(field.replace(",", ".") if comma else field) if "_" not in field else np.nan
-    except ValueError:
-        return np.nan
+def _values(name: str, fields: list[str], decimal: str) -> np.ndarray:
+    if fields and is_stamp(fields[0]):
+        return seconds(fields, name)
+    return np.array([number(field, decimal == ",") for field in fields])
 
 
 def _read_npz(path: Path) -> Table:
@@ -120,6 +99,41 @@ def _read_npz(path: Path) -> Table:
         raise InputError(
             f"cannot read {path}: it is not a valid NPZ file ({error}); save it with numpy.savez"
         ) from None
+
+
+def _read_json(path: Path) -> Table:
+    """Lists of numbers by name, or a list of records with the same names."""
+    try:
+        stored = json.loads(path.read_text(encoding="utf-8-sig"))
+    except ValueError as error:
+        raise InputError(f"cannot read {path}: it is not valid JSON ({error}); correct it") from None
+    if isinstance(stored, list) and all(isinstance(one, dict) for one in stored):
+        names = dict.fromkeys(name for one in stored for name in one)
+        stored = {name: [one.get(name) for one in stored] for name in names}
+    if not isinstance(stored, dict):
+        raise InputError(
+            f"cannot read {path}: it has no lists of numbers by name; write it as "
+            '{"time_s": [0, 0.001], "x_mm": [5.0, 4.9]}'
+        )
+    arrays = {
+        str(name): np.array([np.nan if one is None else one for one in values])
+        for name, values in _lists(stored)
+    }
+    return _from_arrays(path, arrays, "JSON")
+
+
+def _lists(stored: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, list[Any]]]:
+    """Lists by name, those of nested objects by the names of these and a point."""
+    for name, value in stored.items():
+        if isinstance(value, Mapping):
+            yield from _lists(value, f"{prefix}{name}.")
+        elif isinstance(value, list) and not any(isinstance(one, (list, Mapping)) for one in value):
+            yield f"{prefix}{name}", value
+
+
+def _read_universal(path: Path) -> Table:
+    columns, aliases = read_uff(path)
+    return _from_arrays(path, columns, "UFF")._replace(aliases=aliases)
 
 
 def _from_arrays(path: Path, arrays: Arrays, form: str) -> Table:

@@ -1,7 +1,7 @@
 """Text files of data loggers as rows below a line of names.
 
 Before the names a logger may write what it likes: `sep=;`, its model, its settings.  The names are the line
-above the first row of numbers; below them may be a line of units.  A remark names the lines that are not read.
+above the first row of numbers, with or without a line of units.  A remark names the lines that are not read.
 """
 
 import csv

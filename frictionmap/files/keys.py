@@ -466,7 +466,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
         _unit("acceleration_frequency", "frequency of base_acceleration"),
         _unit("stiffness", "k_1, or stiffness_scale: displacements are in units of P/k_1"),
-        _unit("mass", "instead of the stiffness, for a chain: m_1"),
+        _unit("mass", "m_1 of a chain, in place of the stiffness or of the natural frequency"),
     ),
 }
 

@@ -1,5 +1,6 @@
 """Reference values that convert ratios to Hz and N, and the lengths and forces that follow from them."""
 
+import math
 from dataclasses import dataclass, fields
 from decimal import Decimal
 from fractions import Fraction
@@ -28,12 +29,14 @@ UNIT_KINDS = {
     "mass": "mass",
 }
 
-#: Of these one at most is given.
-_RIVALS = (("load", "base_amplitude", "base_acceleration"), ("stiffness", "mass"))
+#: Of each of these tuples so many at most are given: the others follow.
+_RIVALS = (
+    (("load", "base_amplitude", "base_acceleration"), 1, "one follows from the other; give one of them"),
+    (("natural_frequency", "stiffness", "mass"), 2, "each follows from the two others; give two of them"),
+)
 
 #: The one that needs the other, and why.
 _NEEDS = (
-    ("mass", "natural_frequency", "the stiffness follows from k1 = m1 omega_1^2"),
     (
         "base_acceleration",
         "acceleration_frequency",
@@ -65,8 +68,8 @@ class Units:
     Parameters
     ----------
     natural_frequency : str, optional
-        Frequency at r = 1: sqrt(k_1/m_1)/(2 pi) of a chain, frequency_scale/(2 pi) of matrices.  Hz, kHz,
-        rad/s, rpm.  "model": matrices are in SI units, and so is their frequency_scale, in rad/s.
+        Frequency at r = 1: sqrt(k_1/m_1)/(2 pi) of a chain, frequency_scale/(2 pi) of matrices; of a chain it
+        follows from stiffness and mass.  Hz, kHz, rad/s, rpm.  "model": matrices are in SI units, and so is their frequency_scale, in rad/s.
     load : str, optional
         Amplitude P of the load, with a base that moves P = k_1 Y.  N, mN, kN, lbf.
     base_amplitude : str, optional
@@ -78,7 +81,8 @@ class Units:
         k_1 of a chain, stiffness_scale of matrices.  N/m, N/mm, kN/m, kN/mm, lbf/in.  "model": matrices are
         in SI units, and so is their stiffness_scale, in N/m.
     mass : str, optional
-        Instead of the stiffness of a chain: m_1, which with the natural frequency gives k_1.  kg, lb.
+        m_1 of a chain: with the natural frequency it gives k_1, with the stiffness the natural frequency.
+        kg, lb.
 
     What follows of them for r = 1, beta = 1, an amplitude and a work of 1 is 1e-100 to 1e100 in SI units.
 
@@ -108,12 +112,17 @@ class Units:
         given = [name for name in UNIT_KINDS if getattr(self, name) is not None]
         if not given:
             raise InputError("units", f"must have at least one of {', '.join(UNIT_KINDS)}; got none")
-        for names in _RIVALS:
-            both = [name for name in names if name in given]
-            if len(both) > 1:
-                raise InputError(
-                    "cannot use", both[1], f"with {both[0]}: one follows from the other; give one of them"
-                )
+        for names, most, why in _RIVALS:
+            rivals = [name for name in names if name in given]
+            if len(rivals) > most:
+                raise InputError("cannot use", rivals[most], f"with {' and '.join(rivals[:most])}: {why}")
+        if "mass" in given and not {"natural_frequency", "stiffness"} & set(given):
+            raise InputError(
+                "cannot use",
+                "mass",
+                "alone: it gives k1 = m1 omega_1^2 with natural_frequency, and this frequency with stiffness; "
+                "give one of the two",
+            )
         for name, needed, why in _NEEDS:
             if name in given and needed not in given:
                 raise InputError("cannot use", name, f"without {needed}: {why}; give both")
@@ -172,7 +181,7 @@ class Scales:
         found: Fraction | None = getattr(self, kind)
         if found is None:
             missing = {
-                "frequency": "units.natural_frequency",
+                "frequency": "units.natural_frequency, or units.mass with units.stiffness",
                 "force": "units.load, or units.base_amplitude with units.stiffness",
                 "length": "units.base_amplitude, or units.load with units.stiffness",
             }
@@ -204,6 +213,8 @@ def scales_of(units: Units | None, system: System, variations: Variations | None
     mass = units.value("mass")
     if mass is not None and frequency is not None:
         stiffness = mass * (2 * PI * frequency) ** 2
+    elif mass is not None and stiffness is not None:
+        frequency = _root(stiffness / mass) / (2 * PI)
     force, length = units.value("load"), _base_amplitude(units)
     if stiffness is not None:
         force, length = (
@@ -262,6 +273,15 @@ def _check_variations(variations: Variations | None) -> None:
                     f"with axes.{axis.name}: {number.key} changes along it, so one unit "
                     f"cannot hold for all points; remove one of the two",
                 )
+
+
+def _root(value: Fraction) -> Fraction:
+    """The square root, to 60 digits as pi, or exactly where it is rational."""
+    found = [math.isqrt(number) for number in (value.numerator, value.denominator)]
+    if found[0] ** 2 == value.numerator and found[1] ** 2 == value.denominator:
+        return Fraction(*found)
+    scale = 10**60 * value.denominator  # of the square root's numerator over this denominator
+    return Fraction(math.isqrt(value.numerator * value.denominator * 10**120), scale)
 
 
 def _frequency(units: Units, system: System) -> Fraction | None:

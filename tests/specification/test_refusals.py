@@ -89,7 +89,7 @@ map good.toml --set grid.mu=0.9
 map good.toml --set grid.r={start=0,stop=1,num=100000} --set grid.beta={start=0,stop=1,num=100000}
     grid must have at most 1e+09 cells in memory; got 1e+10 (1 mu x 100000 r x 100000 beta)
 map good.toml --set grid.r=2.1Hz
-    cannot convert grid.r = '2.1Hz' to ratios: a reference value is missing; give units.natural_frequency
+    cannot convert grid.r = '2.1Hz' to ratios: a reference value is missing; give units.natural_frequency, or units.mass with units.stiffness
 map good.toml --set 'grid.r="2,1 Hz"' --set 'units.natural_frequency="4.2 Hz"'
     grid.r must be a number with a unit of frequency (Hz, kHz, rad/s, rpm), such as '4.2 Hz'; got '2,1 Hz': use a decimal point, not a comma
 map good.toml --set 'grid.r="2.1 N"' --set 'units.natural_frequency="4.2 Hz"'
@@ -103,7 +103,7 @@ map good.toml --set 'units.load="-1 N"'
 map good.toml --set 'units={load="1 N",base_amplitude="1 mm"}'
     cannot use units.base_amplitude with load: one follows from the other; give one of them
 map good.toml --set 'units={mass="1 kg"}'
-    cannot use units.mass without natural_frequency: the stiffness follows from k1 = m1 omega_1^2; give both
+    cannot use units.mass alone: it gives k1 = m1 omega_1^2 with natural_frequency, and this frequency with stiffness; give one of the two
 map good.toml --set 'units={base_acceleration="0.5 g"}'
     cannot use units.base_acceleration without acceleration_frequency: the base amplitude Y = a/omega^2, equal at all frequencies, needs the frequency of a; give both
 map good.toml --set 'units.base_amplitude="1 mm"'
@@ -459,7 +459,7 @@ design question.toml --set design.band=[0,1]
 design question.toml --set design.band=[2,1]
     design.band must be increasing; got 1.0 at index 1
 design question.toml --set 'design.band=["1 Hz","2 Hz"]'
-    [design]: cannot convert band = ['1 Hz', '2 Hz'] to ratios: a reference value is missing; give units.natural_frequency
+    [design]: cannot convert band = ['1 Hz', '2 Hz'] to ratios: a reference value is missing; give units.natural_frequency, or units.mass with units.stiffness
 design question.toml --set design.mu=0.9
     design.mu must be >= 1; got 0.9
 design question.toml --set design.beta=[0.5]
@@ -693,7 +693,7 @@ fm.sweep(ONE, [1.0], [-0.5])
 fm.sweep(ONE, [1.0], [0.5], [0.5])
     mu must be >= 1; got 0.5 at index 0
 fm.sweep(ONE, ["1 Hz"], [0.5])
-    cannot convert r = ['1 Hz'] to ratios: a reference value is missing; give units.natural_frequency
+    cannot convert r = ['1 Hz'] to ratios: a reference value is missing; give units.natural_frequency, or units.mass with units.stiffness
 fm.sweep(ONE, [1.0], [0.5], start="sliding")
     start must be one of rest, moving; got 'sliding'
 fm.sweep(ONE, [1.0], [0.5], step=9)

@@ -187,8 +187,11 @@ def test_text_that_is_no_force(text):
         ({"load": "-1 N"}, "load must be > 0; got '-1 N'"),
         ({"load": "model"}, "load must be a number with a unit of force"),
         ({"load": "1 N", "base_amplitude": "1 mm"}, "cannot use base_amplitude with load"),
-        ({"stiffness": "1 N/m", "mass": "1 kg"}, "cannot use mass with stiffness"),
-        ({"mass": "1 kg"}, "cannot use mass without natural_frequency: the stiffness follows"),
+        (
+            {"stiffness": "1 N/m", "mass": "1 kg", "natural_frequency": "1 Hz"},
+            "cannot use mass with natural_frequency and stiffness: each follows from the two others",
+        ),
+        ({"mass": "1 kg"}, "cannot use mass alone: it gives k1 = m1 omega_1^2 with natural_frequency"),
         ({"mass": "5 g", "natural_frequency": "1 Hz"}, "g is a unit of acceleration"),
         ({"base_acceleration": "0.5 g"}, "cannot use base_acceleration without acceleration_frequency"),
         ({"acceleration_frequency": "5 Hz"}, "cannot use acceleration_frequency without base_acceleration"),
@@ -393,10 +396,10 @@ def test_a_grid_with_units_needs_them(rig, tmp_path):
     path.write_text(
         CONFIG.replace("[units]", "[solver]").split("[solver]")[0] + "[grid]" + CONFIG.split("[grid]")[1]
     )
-    with pytest.raises(InputError, match=r"^cannot convert grid\.r = .*; give units\.natural_frequency$"):
+    with pytest.raises(InputError, match=r"^cannot convert grid\.r = .*; give units\.natural_frequency, or .*"):
         load_config(path)
     with pytest.raises(
-        InputError, match=r"^cannot convert r = '4 Hz' to ratios: .*; give units\.natural_frequency$"
+        InputError, match=r"^cannot convert r = '4 Hz' to ratios: .*; give units\.natural_frequency, or .*"
     ):
         fm.boundaries(fm.System(), "4 Hz")
 
@@ -695,3 +698,22 @@ def test_curves_and_motions_have_axes_in_millimetres_and_seconds():
     portrait, loop, _ = fm.plot_orbit(ds)
     assert set(second_axes(portrait)) == {"displacement [mm]"}
     assert set(second_axes(loop)) == {"motion in the contact [mm]", "friction [N]"}
+
+
+def test_mass_and_stiffness_give_the_natural_frequency():
+    """1 kg on 5 N/m: sqrt(5) rad/s, which is irrational; 40 digits from its square."""
+    units = fm.Units(mass="1 kg", stiffness="5 N/m", load="10 N")
+    scales = scales_of(units, fm.System())
+    omega = scales.frequency * 2 * PI
+    assert abs(omega**2 / 5 - 1) < Fraction(1, 10**40)
+    assert scales.length == 2
+    ds = fm.sweep(fm.System(), r=["2.5 rad/s"], beta=["3.92 N"], units=units)
+    assert ds.r.values[0] == 2.5 / 5**0.5
+    # by own integration of x" + 5 x + 3.92 sgn(x') = 10 cos(2.5 t)
+    assert float(ds.contact_amplitude_m[0, 0, 0]) == pytest.approx(6.815165, abs=1e-6)
+
+
+def test_a_rational_frequency_is_exact():
+    """4 kg on 9 N/m: 3/2 rad/s."""
+    scales = scales_of(fm.Units(mass="4 kg", stiffness="9 N/m"), fm.System())
+    assert scales.frequency * 2 * PI == Fraction(3, 2)

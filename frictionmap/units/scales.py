@@ -29,7 +29,7 @@ UNIT_KINDS = {
     "mass": "mass",
 }
 
-#: Of each of these tuples so many at most are given: the others follow.
+#: Values of which some follow from the others: how many of them may be given, and what to do.
 _RIVALS = (
     (("load", "base_amplitude", "base_acceleration"), 1, "one follows from the other; give one of them"),
     (("natural_frequency", "stiffness", "mass"), 2, "each follows from the two others; give two of them"),

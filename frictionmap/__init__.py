@@ -45,6 +45,10 @@ and files that rely on them.  Everything that begins with an underscore, such as
 
 import sys
 from importlib import import_module
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 from .errors import InputError, NoSteadyState
@@ -54,6 +58,7 @@ if TYPE_CHECKING:
     from . import design, features, identify, regimes
     from .explorer.notebook import explore
     from .files.config import load_config
+    from .files.opening import open  # fm.open, as in other packages of files
     from .model.contact import Contact
     from .model.periodic_load import PeriodicLoad
     from .model.settings import Solver
@@ -99,6 +104,7 @@ __all__ = [
     "features",
     "identify",
     "load_config",
+    "open",
     "plot_boundaries",
     "plot_curves",
     "plot_design",
@@ -130,6 +136,7 @@ _HOME = {
     "curves": "steady.curves",
     "explore": "explorer.notebook",
     "load_config": "files.config",
+    "open": "files.opening",
     "plot_boundaries": "plot",
     "plot_curves": "plot",
     "plot_design": "plot",
@@ -146,14 +153,27 @@ _HOME = {
 }
 
 
-def _register() -> None:
-    """Add the accessor `frictionmap` to datasets, once something else has loaded xarray, which is slow."""
-    if "xarray" in sys.modules:
-        import_module(".accessor", __name__)
+class _WithAccessor(MetaPathFinder):
+    """Adds the accessor `frictionmap` to datasets as soon as somebody loads xarray, which is slow to load."""
+
+    def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
+        if name != "xarray":
+            return None
+        sys.meta_path.remove(self)
+        spec = find_spec(name)
+        if spec is not None and spec.loader is not None:
+            load = spec.loader.exec_module
+
+            def load_both(module: ModuleType) -> None:
+                load(module)
+                import_module(".accessor", __name__)
+
+            spec.loader.exec_module = load_both  # type: ignore[method-assign]
+        return spec
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)
 
 
 def __getattr__(name: str) -> object:
@@ -162,9 +182,11 @@ def __getattr__(name: str) -> object:
     if name in _HOME:
         value = getattr(import_module(f".{_HOME[name]}", __name__), name)
         globals()[name] = value
-        _register()
         return value
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-_register()
+if "xarray" in sys.modules:
+    import_module(".accessor", __name__)
+else:
+    sys.meta_path.insert(0, _WithAccessor())

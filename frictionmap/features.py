@@ -18,6 +18,26 @@ from .model.modes import ModalModel
 from .model.system import System
 from .roots import FrequencyRange, find_roots, shaped, union, with_poles, without
 
+__all__ = [
+    "FirstHarmonicPoints",
+    "HighFrequency",
+    "all_mass_invariant_points",
+    "first_harmonic_invariant_points",
+    "first_harmonic_points",
+    "high_frequency_limits",
+    "invariant_points",
+    "mass_invariant_points",
+    "one_phase",
+    "peak_amplitudes",
+    "peak_thresholds",
+    "quasi_static_displacement",
+]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
+
 #: Largest number of invariant points sought, from the highest down: they accumulate towards r = 0, where
 #: hardly any motion is continuous.
 MOST_POINTS = 1000

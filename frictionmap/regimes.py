@@ -53,6 +53,11 @@ __all__ = [
     "status_meaning",
 ]
 
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
+
 UNRESOLVED = -1
 PERMANENT_STICKING = 0
 STICK_SLIP = 1

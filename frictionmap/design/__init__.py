@@ -28,3 +28,7 @@ from .questions import at_most, least_peak, margin, no_stop, robust, stuck, two_
 from .samples import Samples
 
 __all__ = ["Samples", "at_most", "least_peak", "margin", "no_stop", "robust", "stuck", "two_forces"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -15,6 +15,7 @@ slices       one point of further axes, selected from a file
 estimates    estimates: read, checked, summarised
 designs      answers to design questions: read, checked, summarised
 reading      files and stores read, and checked against the schema
+opening      `open`: a file or store as a dataset
 stored       system, excitation and initial state of a dataset
 summary      summary of a file, in words
 in_json      summary of a file as JSON, for scripts

@@ -4,6 +4,7 @@
 module              what is in it
 ==================  ===================================================================================
 html                short descriptions for notebooks
+shown               short texts of settings
 settings            settings of the solver and of response curves; names of the outputs
 periodic_load       loads of several harmonics: waveforms, tables, samples
 contact             a contact with its spring, belt and normal load

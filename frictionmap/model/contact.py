@@ -9,6 +9,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from .periodic_load import scalar_harmonics
+from .shown import Shown
 
 CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 
@@ -16,8 +17,8 @@ CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 MOST_CONTACTS = 8
 
 
-@dataclass(frozen=True)
-class Contact:
+@dataclass(frozen=True, repr=False)
+class Contact(Shown):
     """One friction contact.
 
     Parameters

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from .. import checks
 from ..errors import InputError
+from .shown import Shown
 
 #: Highest harmonic of a load.
 MOST_HARMONICS = 200
@@ -35,8 +36,8 @@ _PARTS = ("amplitude", "phase_deg", "re", "im")
 ENTRY_KEYS = ("n", "mass", *_PARTS)
 
 
-@dataclass(frozen=True)
-class PeriodicLoad:
+@dataclass(frozen=True, repr=False)
+class PeriodicLoad(Shown):
     """One load of several harmonics, over its reference load P.
 
     Parameters

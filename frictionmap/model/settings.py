@@ -7,6 +7,7 @@ from typing import Any, Literal, TypedDict, get_args
 from .. import checks
 from ..errors import InputError
 from .html import as_table
+from .shown import Shown
 
 #: Outputs of a map, in the order of the file; described in `labels.CELL_VARIABLES`, `CURVE_OUTPUTS` in
 #: `labels.CURVES`.
@@ -84,8 +85,8 @@ Skip = Literal["exact", "none"]
 Steady = Literal["solved", "marched"]
 
 
-@dataclass(frozen=True)
-class Solver:
+@dataclass(frozen=True, repr=False)
+class Solver(Shown):
     """Settings of the steady-state solver, and the outputs to keep.
 
     Parameters

@@ -42,6 +42,7 @@ from .modes import (
     solve_modes,
 )
 from .periodic_load import PeriodicLoad
+from .shown import Shown
 
 EXCITATIONS = ("force", "base")
 DAMPING_REFERENCES = ("ground", "base")
@@ -123,8 +124,8 @@ class _DampedModes(NamedTuple):
     left_out: Decoupling | None = None
 
 
-@dataclass(frozen=True)
-class System:
+@dataclass(frozen=True, repr=False)
+class System(Shown):
     """A linear structure with dry-friction contacts under a periodic load.
 
     The structure is a chain of masses and springs, defined by ratios, or any linear structure, defined by M
@@ -276,6 +277,14 @@ class System:
             )
         if self.n > 1 or self.matrices is not None:
             _ = self.modes  # errors that only the modes reveal are raised here
+
+    def _filled(self) -> Mapping[str, object]:
+        one = (1.0,) if self.matrices is None and self.n == 1 else None
+        return {
+            "contact_masses": (1,), "load_mass": 1, "mass_ratios": one, "stiffness_ratios": one,
+            "damping_ratios": (0.0,) * self.n,
+            "excitation": "base" if self.contact == "joined-base-wall" else "force",
+        }  # fmt: skip
 
     def _set(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)

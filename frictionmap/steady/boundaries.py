@@ -11,21 +11,27 @@ from ..solvers.choose import engine_of
 from ..theory.refinement import boundary_check
 from ..units.axes import KINDS, ratios
 from ..units.scales import Units, scales_of
+from .asked import Configured, asked
 
 
 def boundaries(
-    system: System, r: ArrayLike, mu: ArrayLike = 1.0, *, units: Units | None = None
+    system: System | Configured,
+    r: ArrayLike | None = None,
+    mu: ArrayLike | None = None,
+    *,
+    units: Units | None = None,
 ) -> xr.Dataset:
     """Compute the boundaries of the regimes over frequency.
 
     Parameters
     ----------
-    system : System
+    system : System or Config
+        A configuration of `load_config` brings its axes, settings and units; arguments replace them.
     r : array_like, shape (n_r,)
         Frequency ratios omega/omega_1 [-], >= 0, increasing; omega_1 = sqrt(k_1/m_1) for a chain, else the
         system's frequency_scale.
     mu : array_like, shape (n_mu,)
-        Ratios of static to kinetic friction [-], >= 1, increasing.
+        Ratios of static to kinetic friction [-], >= 1, increasing; default: 1.
     units : Units, optional
         Reference values that convert ratios to Hz and N, as in `sweep`; r may then be frequencies.
 
@@ -64,7 +70,7 @@ def boundaries(
     >>> ds.beta_stick.values
     array([[0.25, 4.  ]])
     """
-    checks.instance(system, "system", System)
+    system, r, _, mu, units, _ = asked(system, r, None, mu, units, needs=("r",))
     scales = scales_of(units, system)
     r = checks.axis(ratios(r, "r", KINDS["r"], scales), "r", least=0.0, most=checks.LARGEST_RATIO)
     mu = checks.axis(mu, "mu", least=1.0)

@@ -8,7 +8,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from .. import checks
 from ..datasets.physical import with_units
 from ..datasets.variables import stamp
 from ..jobs import Progress
@@ -18,14 +17,15 @@ from ..single.maps import checked_axes
 from ..single.quantity_data import PARTS
 from ..solvers.choose import engine_of
 from ..units.scales import Units, scales_of
+from .asked import Configured, asked
 from .refinement import reduction_check
 
 
 def curves(
-    system: System,
-    r: ArrayLike,
-    beta: ArrayLike,
-    mu: ArrayLike = 1.0,
+    system: System | Configured,
+    r: ArrayLike | None = None,
+    beta: ArrayLike | None = None,
+    mu: ArrayLike | None = None,
     *,
     harmonics: int | None = None,
     quantities: Sequence[Quantity] | None = None,
@@ -39,13 +39,14 @@ def curves(
 
     Parameters
     ----------
-    system : System
+    system : System or Config
+        A configuration of `load_config` brings its axes, settings and units; arguments replace them.
     r : array_like, shape (n_r,)
         Frequency ratios omega/omega_1 [-], >= 0, increasing.
     beta : array_like, shape (n_beta,)
         Ratios of kinetic friction force to load amplitude F/P (F/(k1 Y)) [-], >= 0, increasing.
     mu : array_like, shape (n_mu,)
-        Ratios of static to kinetic friction [-], >= 1, increasing.
+        Ratios of static to kinetic friction [-], >= 1, increasing; default: 1.
     harmonics : int, optional
         Highest harmonic of the displacements, of the motion in the contact and of the friction force, up to
         1000; 0: none.  Default 7 where `quantities` contains "harmonics", else none.
@@ -100,17 +101,20 @@ def curves(
     >>> round(ds.first_harmonic_phase.item(), 6), round(ds.work_friction.item(), 6)
     (0.257396, 2.805945)
     """
-    checks.instance(system, "system", System)
+    system, r, beta, mu, units, config = asked(system, r, beta, mu, units)
+    wanted = curve_settings(harmonics, quantities)
+    if config is not None:
+        solver = solver or config.solver
+        wanted = config.curves if harmonics is None and quantities is None else wanted
     solver = merged(solver, settings)
-    asked = curve_settings(harmonics, quantities)
     scales = scales_of(units, system)
-    axes = checked_axes(r, beta, mu, system.n * (asked.harmonics + 1), scales)
+    axes = checked_axes(r, beta, mu, system.n * (wanted.harmonics + 1), scales)
     system.costs(axes["r"])
     grid = {name: axes[name] for name in ("r", "beta", "mu")}
     axes["dof"] = np.array(system.dofs.numbers)
-    if asked.harmonics:
-        axes |= {"harmonic": np.arange(asked.harmonics + 1), "part": PARTS}
-    ds = engine_of(system).curves(axes, solver, asked, threads, progress)
-    ds = stamp(ds, "curves", "Response curves", system, grid, solver, asdict(asked), units=units)
+    if wanted.harmonics:
+        axes |= {"harmonic": np.arange(wanted.harmonics + 1), "part": PARTS}
+    ds = engine_of(system).curves(axes, solver, wanted, threads, progress)
+    ds = stamp(ds, "curves", "Response curves", system, grid, solver, asdict(wanted), units=units)
     ds.attrs |= reduction_check(system, grid, solver, threads)
     return with_units(ds, scales)

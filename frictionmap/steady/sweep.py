@@ -19,14 +19,15 @@ from ..model.variations import Variations, checked_variations
 from ..single.maps import checked_axes
 from ..solvers.choose import engine_of
 from ..units.scales import Units, scales_of
+from .asked import Configured, asked
 from .refinement import reduction_check
 
 
 def sweep(
-    system: System,
-    r: ArrayLike,
-    beta: ArrayLike,
-    mu: ArrayLike = 1.0,
+    system: System | Configured,
+    r: ArrayLike | None = None,
+    beta: ArrayLike | None = None,
+    mu: ArrayLike | None = None,
     *,
     solver: Solver | None = None,
     axes: Mapping[str, Any] | Variations | None = None,
@@ -39,13 +40,14 @@ def sweep(
 
     Parameters
     ----------
-    system : System
+    system : System or Config
+        A configuration of `load_config` brings its axes, settings and units; arguments replace them.
     r : array_like, shape (n_r,)
         Frequency ratios omega/omega_1 [-], >= 0, increasing.
     beta : array_like, shape (n_beta,)
         Ratios of kinetic friction force to load amplitude F/P (F/(k1 Y)) [-], >= 0, increasing.
     mu : array_like, shape (n_mu,)
-        Ratios of static to kinetic friction [-], >= 1, increasing.
+        Ratios of static to kinetic friction [-], >= 1, increasing; default: 1.
     solver : Solver, optional
         Settings.  Single settings may also be given as keywords: start, cycles, tolerance, steps, skip,
         steady, outputs (see `Solver`); a keyword overrides the setting of `solver`.
@@ -86,8 +88,12 @@ def sweep(
     >>> ds.stops_per_cycle.values
     array([[[ 0.,  2., nan]]], dtype=float32)
     """
-    checks.instance(system, "system", System)
-    return swept(system, (r, beta, mu), merged(solver, settings), axes, threads, progress, units)
+    given = asked(system, r, beta, mu, units)
+    if given.config is not None:
+        solver = solver or given.config.solver
+        axes = given.config.variations if axes is None else axes
+    grid = (given.r, given.beta, given.mu)
+    return swept(given.system, grid, merged(solver, settings), axes, threads, progress, given.units)
 
 
 def swept(

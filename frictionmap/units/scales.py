@@ -9,6 +9,7 @@ from typing import Any
 from .. import checks
 from ..errors import InputError
 from ..model.html import as_table
+from ..model.shown import Shown
 from ..model.system import System
 from ..model.variations import Variations
 from .quantities import quantity
@@ -59,8 +60,8 @@ _ONES = {
 }
 
 
-@dataclass(frozen=True)
-class Units:
+@dataclass(frozen=True, repr=False)
+class Units(Shown):
     """Reference values that convert ratios to Hz and N.
 
     Each is a text such as "4.2 Hz", or a quantity of pint, astropy or unyt.
@@ -68,8 +69,9 @@ class Units:
     Parameters
     ----------
     natural_frequency : str, optional
-        Frequency at r = 1: sqrt(k_1/m_1)/(2 pi) of a chain, frequency_scale/(2 pi) of matrices; of a chain it
-        follows from stiffness and mass.  Hz, kHz, rad/s, rpm.  "model": matrices are in SI units, and so is their frequency_scale, in rad/s.
+        Frequency at r = 1: sqrt(k_1/m_1)/(2 pi) of a chain, which follows from stiffness and mass, too;
+        frequency_scale/(2 pi) of matrices.  Hz, kHz, rad/s, rpm.  "model": matrices are in SI units, and so
+        is their frequency_scale, in rad/s.
     load : str, optional
         Amplitude P of the load, with a base that moves P = k_1 Y.  N, mN, kN, lbf.
     base_amplitude : str, optional
@@ -120,8 +122,8 @@ class Units:
             raise InputError(
                 "cannot use",
                 "mass",
-                "alone: it gives k1 = m1 omega_1^2 with natural_frequency, and this frequency with stiffness; "
-                "give one of the two",
+                "alone: it gives k1 = m1 omega_1^2 with natural_frequency, and this frequency with "
+                "stiffness; give one of the two",
             )
         for name, needed, why in _NEEDS:
             if name in given and needed not in given:

@@ -396,7 +396,9 @@ def test_a_grid_with_units_needs_them(rig, tmp_path):
     path.write_text(
         CONFIG.replace("[units]", "[solver]").split("[solver]")[0] + "[grid]" + CONFIG.split("[grid]")[1]
     )
-    with pytest.raises(InputError, match=r"^cannot convert grid\.r = .*; give units\.natural_frequency, or .*"):
+    with pytest.raises(
+        InputError, match=r"^cannot convert grid\.r = .*; give units\.natural_frequency, or .*"
+    ):
         load_config(path)
     with pytest.raises(
         InputError, match=r"^cannot convert r = '4 Hz' to ratios: .*; give units\.natural_frequency, or .*"

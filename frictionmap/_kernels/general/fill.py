@@ -28,11 +28,11 @@ from .counts import MOVED, RELEASE_ORDER, REVERSALS, SLIPS, STOPS, STOPS_ERROR, 
 from .laws.contact import regime_of
 from .laws.kinds import has_force
 from .places import fill_needs, keep_held, place_after_start
-from .problem import padded
-from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES, varies
+from .problem import padded, varies
+from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES
 from .return_map import copy_motion, copy_state, from_rest, steady_period
 from .series import Friction
-from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, make_workspace, solve_from
+from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, is_unique, make_workspace, solve_from
 
 #: A steady state with a larger multiplier may be one of a continuum: the result depends on the initial state.
 _ISOLATED = 1.0 - 1e-9
@@ -257,13 +257,10 @@ def _place_stuck(problem, grid, m, i, b, friction, workspace, place, out):
 
 @kernel
 def _set_friction(grid, m, i, b, friction):
-    """Friction of every contact in a cell; whether it is the same, static and kinetic."""
-    unique = True
+    """Set the friction of every contact in a cell."""
     for j in range(friction.kinetic.size):
         friction.kinetic[j] = grid.kinetic[j, 0] * grid.beta[i, b] + grid.kinetic[j, 1]
         friction.static[j] = grid.static[m, j, 0] * grid.beta[i, b] + grid.static[m, j, 1]
-        unique = unique and friction.static[j] <= friction.kinetic[j]
-    return unique
 
 
 @entry
@@ -321,8 +318,8 @@ def _solve_cell(problem, grid, m, i, b, friction, workspace, trail):
     Steady, half periods measured, multiplier
     """
     state, row, memory = grid.starts[i], workspace.row, workspace.memory
-    unique = _set_friction(grid, m, i, b, friction)
-    if unique and trail.count[0] > 0:
+    _set_friction(grid, m, i, b, friction)
+    if trail.count[0] > 0 and is_unique(friction):
         _begin_ahead(grid.beta[i, b], trail, memory)
         found, halves, multiplier = solve_from(
             problem, friction, state, grid.cycles, grid.tolerance, workspace, RANGES, True

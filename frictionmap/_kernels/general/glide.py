@@ -13,8 +13,9 @@ from ..compiler import inner_kernel, kernel
 from ..compiler.packed import packed
 from ..compiler.vectors import LANES, filled, least, load, mask_above, most, store
 from .crossings import fill_controls
-from .laws.kinds import has_force, state_size
-from .problem import SECTION, WIDTH, F, H, P, Q, first_contact_row
+from .laws.contact import has_tables
+from .laws.kinds import state_size
+from .problem import SECTION, WIDTH, F, H, P, Q, first_contact_row, varies
 from .series import Friction, advance, expand
 from .tangent import pattern_slot
 
@@ -26,13 +27,10 @@ def can_glide(problem, row):
     """Whether intervals can be passed: loads are kept, normal loads constant, no spring is behind a belt."""
     if 2 * row.intervals[0] * problem.push.shape[1] > row.loads.shape[0]:
         return False
+    possible = True
     for j in range(problem.spring.size):
-        if has_force(problem, j) and problem.belt[j] != 0.0:
-            return False
-        for d in range(problem.push.shape[1]):
-            if problem.normal[j, d] != 0.0:
-                return False
-    return True
+        possible = possible and has_tables(problem, j) and not varies(problem, j)
+    return possible
 
 
 @kernel

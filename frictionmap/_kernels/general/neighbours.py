@@ -14,7 +14,7 @@ import numpy as np
 from ..compiler import entry, kernel
 from .counts import MOVED, NEAREST_STOP, STOPS
 from .events import CONTACT, DOWN, FASTEST, LENGTH, MOST, SLOWEST, STOPS_LISTED, TIME, TURNS_LISTED, UP
-from .problem import padded
+from .problem import padded, varies
 
 #: Kinds of motion: no contact stops; some do; it grows without bound, so that no contact stops; not found.
 SLIDES, HAS_STOPS, GROWS, NOT_FOUND = 0, 1, 2, 3
@@ -116,10 +116,7 @@ def _stays_on_one_side(problem, events, j):
     """
     if problem.belt[j] == 0.0 or (events.last[UP, j] != 0.0 and events.last[DOWN, j] != 0.0):
         return False
-    constant = True
-    for d in range(problem.push.shape[1]):
-        constant = constant and problem.normal[j, d] == 0.0
-    return constant
+    return not varies(problem, j)
 
 
 @kernel

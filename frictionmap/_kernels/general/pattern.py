@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compiler import kernel
 from .laws.kinds import has_constraint, is_constrained, keeps_force
-from .problem import F, H, P, Q, first_contact_row
+from .problem import F, H, P, Q, force_row
 from .row import set_channels
 from .series import factor_held, solve_held
 
@@ -40,7 +40,7 @@ def _free_accelerations(problem, row, motion, box):
     """Fill the accelerations FREE in the contacts with no force from those that take part."""
     modes, channels = problem.push.shape
     contacts = problem.spring.size
-    series, first = motion.series, first_contact_row(problem)
+    series = motion.series
     for j in range(contacts):
         box[FREE, j] = 0.0
         for d in range(channels):
@@ -56,7 +56,7 @@ def _free_accelerations(problem, row, motion, box):
             found += row.push[d, m] * series[modes + d, 0]
         for j in range(contacts):
             if box[PARTICIPATES, j] == 0.0:
-                found -= row.reaction[j, m] * series[first + 2 * contacts + j, 0]
+                found -= row.reaction[j, m] * series[force_row(problem, j), 0]
         for j in range(contacts):
             box[FREE, j] += problem.chi[j, m] * found
 
@@ -217,18 +217,24 @@ def _arrives_too(problem, row, motion, box, j):
 
 
 @kernel
+def slide_velocity(problem, row, motion, j):
+    """Velocity dz/dx of a contact relative to its wall; the series of the channels must be there."""
+    modes, channels = problem.push.shape
+    w = -row.numbers[H] * problem.belt[j]
+    for m in range(modes):
+        w += problem.chi[j, m] * motion.state[P, m]
+    for d in range(channels):
+        w -= problem.base[j, d] * motion.series[modes + d, 1]
+    return w
+
+
+@kernel
 def stop_exactly(problem, row, motion):
     """Take the rounding error of their velocities from the participants; `motion.held` lists them."""
-    modes, channels = problem.push.shape
-    contacts = motion.sense.size
-    series, right = motion.series, motion.solve[contacts]
+    contacts, modes = problem.chi.shape
+    right = motion.solve[contacts]
     for a in range(motion.held[contacts]):
-        j = motion.held[a]
-        right[a] = -row.numbers[H] * problem.belt[j]
-        for m in range(modes):
-            right[a] += problem.chi[j, m] * motion.state[P, m]
-        for d in range(channels):
-            right[a] -= problem.base[j, d] * series[modes + d, 1]
+        right[a] = slide_velocity(problem, row, motion, motion.held[a])
     solve_held(motion, right)
     for a in range(motion.held[contacts]):
         for m in range(modes):
@@ -239,7 +245,7 @@ def stop_exactly(problem, row, motion):
 def _take_part(problem, row, friction, tau, motion, box):
     """Decide which contacts take part in what follows an event, and their friction there."""
     contacts = motion.sense.size
-    series, first = motion.series, first_contact_row(problem)
+    series = motion.series
     set_channels(problem, row, tau, -1, motion)
     for j in range(contacts):
         nu = 1.0
@@ -250,9 +256,9 @@ def _take_part(problem, row, friction, tau, motion, box):
         box[PARTICIPATES, j] = 0.0
         if is_constrained(problem, motion, j):
             box[PARTICIPATES, j] = 1.0
-        series[first + 2 * contacts + j, 0] = motion.sense[j] * box[KINETIC, j]
+        series[force_row(problem, j), 0] = motion.sense[j] * box[KINETIC, j]
         if keeps_force(problem, motion, j):
-            series[first + 2 * contacts + j, 0] = motion.state[F, j]
+            series[force_row(problem, j), 0] = motion.state[F, j]
     _free_accelerations(problem, row, motion, box)
     for j in range(contacts):
         if (
@@ -303,21 +309,15 @@ def begin(problem, row, friction, tau, motion, box):
     """Decide the pattern of a state at the start, from its velocities; elastic contacts begin at rest, their
     springs unloaded.
     """
-    modes, channels = problem.push.shape
-    contacts = motion.sense.size
     motion.clock[0] = math.nan
     set_channels(problem, row, tau, -1, motion)
-    for j in range(contacts):
-        w = -row.numbers[H] * problem.belt[j]
-        for m in range(modes):
-            w += problem.chi[j, m] * motion.state[P, m]
-        for d in range(channels):
-            w -= problem.base[j, d] * motion.series[modes + d, 1]
+    for j in range(motion.sense.size):
+        w = slide_velocity(problem, row, motion, j)
         motion.fresh[j] = 0
         motion.sense[j] = int(np.sign(w)) if has_constraint(problem, j) else 0
     if not settle(problem, row, friction, tau, motion, box, -1, -1):
         return False
-    for j in range(contacts):
+    for j in range(motion.sense.size):
         if box[PARTICIPATES, j] != 0.0 and motion.sense[j] != 0:
             motion.fresh[j] = 1
     return True

@@ -19,8 +19,8 @@ from .follow import FOLLOWED
 from .laws.kinds import has_force, holding_stiffness
 from .orbits import NO_REPEAT, REPEATS, newton
 from .pattern import stop_exactly
-from .problem import SECTION, F, H, P, Q, R, padded
-from .record import FORCES, HIGH, LOW, NOTHING, clear_record, varies
+from .problem import SECTION, F, H, P, Q, R, padded, varies
+from .record import FORCES, HIGH, LOW, NOTHING, clear_record
 from .return_map import (
     begins_held,
     copy_motion,

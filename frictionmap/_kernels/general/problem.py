@@ -170,3 +170,12 @@ def force_row(problem, j):
 def normal_row(problem, j):
     """Row of the normal load nu of a contact."""
     return first_contact_row(problem) + 3 * problem.spring.size + j
+
+
+@kernel
+def varies(problem, j):
+    """Whether the normal load of a contact varies."""
+    varies = False
+    for d in range(problem.normal.shape[1]):
+        varies = varies or problem.normal[j, d] != 0.0
+    return varies

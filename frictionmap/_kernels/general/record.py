@@ -10,7 +10,7 @@ from .crossings import first_zero, next_turn, value_at
 from .events import MOST, Events, list_step, make_events
 from .laws.contact import moves_one_way
 from .laws.kinds import has_force
-from .problem import LONG, SIZE, TERMS, WIDTH, H, first_contact_row
+from .problem import LONG, SIZE, TERMS, WIDTH, H, first_contact_row, varies
 
 NOTHING, RANGES, STEPS, FORCES, EVENTS = 0, 1, 2, 3, 4
 
@@ -179,15 +179,6 @@ def _integral_of_product(series, a, b, end):
         x = end * NODES[i]
         sum_ += WEIGHTS[i] * value_at(series, a, x) * value_at(series, b, x)
     return end * sum_
-
-
-@kernel
-def varies(problem, j):
-    """Whether the normal load of a contact varies."""
-    varies = False
-    for d in range(problem.normal.shape[1]):
-        varies = varies or problem.normal[j, d] != 0.0
-    return varies
 
 
 @kernel

@@ -240,12 +240,9 @@ def find(problem, row, friction, cycles, tolerance, motion, memory, ring, record
     -------
     Steady
     """
-    unique = True
-    for j in range(memory.senses.size):
-        unique = unique and friction.static[j] <= friction.kinetic[j]
     ring.count[0] = 0
     keep(memory, ring)
-    if unique:
+    if is_unique(friction):
         return _find_unique(problem, row, friction, cycles, tolerance, motion, memory, ring, record)
     return _find_from_start(problem, row, friction, cycles, tolerance, motion, memory, ring, record, course)
 
@@ -319,42 +316,6 @@ def begin_row(problem, i, workspace):
     """Fill the constants of r[i]."""
     set_row(problem, i, workspace.row)
     forget_row(workspace.single)
-
-
-@kernel
-def solve(problem, friction, cycles, tolerance, workspace, what):
-    """Find and measure the steady state of a cell, from the state in `workspace.memory.start`.
-
-    Parameters
-    ----------
-    problem, friction : Problem, Friction
-    cycles, tolerance : see `find`
-    workspace : Workspace after `begin_row`
-    what : NOTHING or RANGES, see `measure`
-
-    Returns
-    -------
-    Steady, half periods measured, multiplier
-    """
-    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
-    base = base_halves(problem)
-    if friction.static[0] <= friction.kinetic[0] and fits_row(problem, row, workspace.single, base):
-        solved, spent, multiplier = solve_single(
-            problem, row, workspace.single, friction.kinetic[0], memory, record
-        )
-        if solved:
-            return Steady(REPEATS, base, spent), base, multiplier
-    found = find(
-        problem, row, friction, cycles, tolerance, motion, memory, workspace.ring, record, workspace.course
-    )
-    if found.status != REPEATS:
-        return found, 0, math.nan
-    halves, multiplier = measure(
-        problem, row, friction, found.halves, motion, memory, record, workspace.ring, what
-    )
-    if halves == 0:
-        found = Steady(CHATTERS, 0, found.cycles)
-    return found, halves, multiplier
 
 
 @kernel

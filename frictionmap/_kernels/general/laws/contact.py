@@ -54,6 +54,12 @@ def regime_of(problem, counts, j):
 
 
 @kernel
+def has_tables(problem, j):
+    """Whether tables of parts of the motion hold for a contact, see `glide`: a belt would load a spring."""
+    return kind_of(problem, j) == RIGID or problem.belt[j] == 0.0
+
+
+@kernel
 def moves_one_way(problem, j):
     """Whether the displacement in a contact has its extremes at the ends of phases."""
     return kind_of(problem, j) == RIGID and problem.belt[j] == 0.0

@@ -8,10 +8,11 @@ from pathlib import Path
 import frictionmap as fm
 from frictionmap import regimes
 from frictionmap.command_line.arguments import Command, described
-from frictionmap.datasets.design_labels import DESIGN
+from frictionmap.datasets.design_labels import answer_labels
 from frictionmap.datasets.labels import LABELS, Label
 from frictionmap.datasets.provenance import value_text
-from frictionmap.files.keys import KEYS, TABLES, Key, describe_values
+from frictionmap.files.key import Key, describe_values
+from frictionmap.files.keys import KEYS, TABLES
 from frictionmap.identify.rigs.configuration import KINDS
 from frictionmap.identify.rigs.keys import TABLES as RIG_TABLES
 from frictionmap.identify.rigs.keys import rig_keys
@@ -153,7 +154,7 @@ def variables() -> Iterator[str]:
     yield "Variables without a unit are dimensionless. `frictionmap info` lists those that a file contains.\n"
     yield from _labelled(LABELS)
     yield "\n## Answers to design questions\n"
-    yield from _labelled(DESIGN)
+    yield from _labelled(answer_labels())
 
 
 def _labelled(labels: Mapping[str, Label]) -> Iterator[str]:

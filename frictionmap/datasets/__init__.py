@@ -5,6 +5,7 @@ module           what is in it
 ===============  ==================================================================
 labels           names, dimensions, types, units and meanings of all variables
 estimate_labels  names, units and meanings of estimates from measured data
+questions        design questions by their records, for all places that list them
 design_labels    names, units and meanings of answers to design questions
 provenance       the history of a dataset, and the configuration that reproduces it
 variables        arrays as labelled variables, and datasets with their attributes

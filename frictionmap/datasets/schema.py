@@ -1,13 +1,13 @@
 """Schema of datasets: every variable is checked against its label before it is used."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 import xarray as xr
 
 from .. import checks
 from ..errors import InputError
-from .design_labels import DESIGN
+from .design_labels import answer_labels
 from .estimate_labels import ESTIMATE_TEXTS, ESTIMATES
 from .labels import (
     BESIDE,
@@ -33,8 +33,8 @@ TEXTS = (
 )  # fmt: skip
 
 
-#: Kinds of datasets with variables of their own.
-_OWN = {"estimates": ESTIMATES, "design": DESIGN}
+#: Labels of the kinds of datasets with variables of their own.
+_OWN: dict[str, Callable[[], dict[str, Label]]] = {"estimates": lambda: ESTIMATES, "design": answer_labels}
 
 
 def is_own(what: str) -> bool:
@@ -44,7 +44,7 @@ def is_own(what: str) -> bool:
 
 def _labels_by_name(what: str) -> dict[str, Label]:
     """Labels of axes and variables of a kind of dataset."""
-    return _OWN.get(what) or {**COORDINATES, **BESIDE, **labels_of(what)}
+    return _OWN[what]() if what in _OWN else {**COORDINATES, **BESIDE, **labels_of(what)}
 
 
 def _is_history(ds: xr.Dataset, name: object) -> bool:

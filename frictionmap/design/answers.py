@@ -6,32 +6,36 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..datasets.design_labels import DESIGN, DESIGN_AXES
+from ..datasets.design_labels import answer_axes, answer_labels
 from ..datasets.labels import attributes
 from ..datasets.physical import scale_attributes
 from ..datasets.provenance import value_text
+from ..datasets.questions import record
 from ..datasets.variables import stamp
 from ..model.system import System
 from ..units.scales import Scales, Units
-from .band import Band
-from .responses import Response
+from .band import Band, peak_samples
+from .limits import boundary_samples, has_no_stop_limit, no_stop_limit, starts_matter, stick_limit
+from .minimum import Points
+from .optimum import THRESHOLD, TWO_PEAKS, Minimum, Optimum, find_optimum, irregular_cells, largest
+from .performance import PerformanceCurve
+from .responses import Response, Responses
+from .sampled import SampledPerformance, sample_values, sampled
+from .samples import Samples
+from .task import Task
 
-#: Titles of the answers.
-_TITLES = {
-    "least-peak": "Friction with the least peak",
-    "robust": "Friction with the least peak within its spread",
-    "at-most": "Friction that keeps a response within a limit",
-    "no-stop": "Most friction without a stop",
-    "stuck": "Least friction that holds",
-    "margin": "Margins of a working point",
-    "two-forces": "Two friction forces with the least peak",
-}
+#: Relative changes of the friction at which the response is given beside the answer.
+_OFFSETS = np.array([-0.2, -0.02, 0.02, 0.2])
 
-_OF_SAMPLES = "Friction with the least peak for a share of samples"
+#: Response curves of an answer, at these multiples of its friction; also without friction, and stuck.
+_CURVES = np.array([0.5, 1.0, 2.0])
+
+#: Peaks of an answer that are listed: those above this share of the largest one.
+_LISTED = 0.8
 
 
 def _variable(name: str, value: Any) -> xr.Variable:
-    label = DESIGN[name]
+    label = answer_labels()[name]
     if label.also and np.size(value) and np.max(value) > label.codes[-1].value:
         label = label._replace(codes=(*label.codes, *label.also))
     attrs = attributes(label)
@@ -48,10 +52,10 @@ def answer(
 
     Parameters
     ----------
-    question : one of `design_labels.QUESTIONS`
+    question : name of its record
     system : System
     band : range of frequencies
-    values : variables and axes by name, see `design_labels.DESIGN`
+    values : variables and axes by name, see `design_labels.answer_labels`
     asked : further keys of the table [design] that ask the same question
     units : Units, or None
     scales : Scales
@@ -59,11 +63,17 @@ def answer(
     """
     found = {"question": question, **values, **_answer_in_units(question, values, asked, scales)}
     variables = {name: _variable(name, value) for name, value in found.items()}
-    coords = {name: variables.pop(name) for name in DESIGN_AXES if name in variables}
+    coords = {name: variables.pop(name) for name in answer_axes() if name in variables}
     r = np.array([band.low, band.high])
     function = f"design.{question.replace('-', '_')}"
     ds = stamp(
-        xr.Dataset(variables, coords), function, _TITLES[question], system, {"r": r}, study=study, units=units
+        xr.Dataset(variables, coords),
+        function,
+        record(question).title,
+        system,
+        {"r": r},
+        study=study,
+        units=units,
     )
     table = {"question": question, "band": [band.low, band.high], **asked}
     lines = [f"{key} = {value_text(value)}" for key, value in table.items()]
@@ -83,12 +93,7 @@ def _answer_in_units(
     found: dict[str, Any] = {}
     force, frequency = scales.of("force"), scales.of("frequency")
     if force is not None:
-        named = {
-            "beta": "friction_force",
-            "interval_begin": "interval_begin_N",
-            "interval_end": "interval_end_N",
-        }
-        found |= {own: np.asarray(values[name]) * force for name, own in named.items() if name in values}
+        found["friction_force"] = np.asarray(values["beta"]) * force
     if frequency is not None and "peak_r" in values:
         found["peak_frequency"] = np.asarray(values["peak_r"]) * frequency
     transmitted = dict(asked.get("response", {})).get("quantity") == "transmitted_force"
@@ -97,3 +102,81 @@ def _answer_in_units(
     if one is not None and "peak" in values:
         found[name] = np.asarray(values["peak"]) * one
     return found
+
+
+def peaks_answer(
+    question: str, task: Task, curve: PerformanceCurve, optimum: Optimum,
+    asked: Mapping[str, Any], further: Mapping[str, Any] | None = None,
+    study: Mapping[str, Any] | None = None,
+) -> xr.Dataset:  # fmt: skip
+    """Build the dataset of a question about the largest response: `asked` and `further` as in `answer`."""
+    best = optimum.best
+    second = optimum.second or Minimum(np.nan, np.nan, "")
+    points = optimum.points
+    unknown = [curve.unknown[beta].number if beta in curve.unknown else 0 for beta in points.beta.tolist()]
+    found = {
+        "beta": best.beta, "mu": task.mu, "kind": best.kind, **_peaks(curve, optimum, "spread" in asked),
+        "second_beta": second.beta, "second_peak": second.size,
+        "beta_search": points.beta, "peak_of_beta": points.size,
+        "unknown_of_beta": unknown,
+        "offset": _OFFSETS, "peak_at_offset": largest(curve.whole(best.beta * (1.0 + _OFFSETS))),
+        **({} if study else task.limits()), **(further or {}), **_response_curves(task, best.beta),
+        **{name: value for name, value in asked.items() if name in answer_labels()},
+    }  # fmt: skip
+    keys = {"response": task.response.as_config(), "mu": task.mu, "beta": [task.low, task.high], **asked}
+    ds = answer(question, task.system, task.band, found, keys, task.units, task.scales, study)
+    caution = irregular_cells(curve, best.beta)
+    return ds.assign_attrs(warnings=caution) if caution else ds
+
+
+def _peaks(curve: PerformanceCurve, optimum: Optimum, of_spread: bool) -> dict[str, Any]:
+    """The peaks of an answer, the largest one first: with a spread the worst in it.  A threshold has none."""
+    best, peaks = optimum.best, optimum.peaks
+    if best.kind == THRESHOLD:
+        return {"peak": [0.0], "at_r": peaks.r[0]}
+    listed = peaks.above(_LISTED * peaks.largest).by_frequency(TWO_PEAKS)
+    states = curve.states(listed)
+    size = np.concatenate(([best.size], listed.size[1:])) if of_spread else listed.size
+    return {"peak": size, "peak_r": listed.r, "peak_regime": states.regime, "peak_stops": states.stops}
+
+
+def _response_curves(task: Task, beta: float) -> dict[str, np.ndarray]:
+    """Response curves at the answer, at half and twice its friction, without friction, and stuck."""
+    responses = Responses(task.system, task.response, task.mu, task.threads)
+    r = peak_samples(task.system, task.band)
+    levels = np.unique(np.concatenate(([0.0] if task.may_be_without_friction else [], beta * _CURVES)))
+    sizes = responses.on_grid(r, levels).size.T
+    if np.isfinite(task.stuck.beta):
+        sizes = np.vstack((sizes, responses.on_grid(r, np.array([1.01 * task.stuck.beta])).size.T))
+        levels = np.append(levels, np.inf)
+    return {"curve": levels, "r_search": r, "response_of_r": sizes}
+
+
+def boundaries_over(system: System, band: Band, mu: float) -> dict[str, np.ndarray]:
+    """The boundaries over a band, for pictures."""
+    r = boundary_samples(system, band)
+    if not has_no_stop_limit(system):
+        return boundaries_at(system, mu, Points(r, np.empty(0)))
+    return boundaries_at(system, mu, Points(r, no_stop_limit(system, r, mu)))
+
+
+def boundaries_at(system: System, mu: float, no_stop: Points) -> dict[str, np.ndarray]:
+    """The boundaries at the frequencies at which beta_lim is known, if the system has one, for pictures."""
+    r = no_stop.beta
+    found = {"r_search": r, "beta_stick_of_r": stick_limit(system, r, mu)}
+    if no_stop.size.size:
+        found["beta_lim_of_r"] = no_stop.size
+    if starts_matter(system, mu):
+        found["beta_stuck_of_r"] = stick_limit(system, r, None)
+    return found
+
+
+def answer_for_samples(task: Task, samples: Samples, *, widen: bool) -> xr.Dataset:
+    """Build the dataset of the friction that is best for a quantile of samples."""
+    variations = samples.of(task.system)
+    task, tasks = sampled(task, variations, widen=widen)
+    curve = SampledPerformance(tasks, samples.quantile)
+    optimum = find_optimum(task, curve)
+    further = sample_values(tasks, curve, optimum.best.beta)
+    asked = {"quantile": samples.quantile}
+    return peaks_answer("robust", task, curve, optimum, asked, further, variations.described)

@@ -9,29 +9,16 @@ from typing import Any
 import xarray as xr
 
 from .. import checks
-from ..datasets.design_labels import QUESTIONS
+from ..datasets.questions import record
 from ..errors import InputError
 from ..files.config import common_tables, design_table, further_axes, read_tree, unknown_key, within
 from ..files.variants import put_variants
-from .questions import at_most, least_peak, margin, no_stop, robust, stuck, two_forces
+from .questions import RECORDS
+from .questions.record import Question
 from .samples import Samples
-
-#: Functions of the questions, the keys that each needs, and those that it may have.
-_FUNCTIONS: dict[str, tuple[Callable[..., xr.Dataset], tuple[str, ...], tuple[str, ...]]] = {
-    "least-peak": (least_peak, ("band",), ("mu", "beta", "response")),
-    "two-forces": (two_forces, ("band",), ("mu", "beta", "response", "second", "ratio")),
-    "robust": (robust, ("band",), ("mu", "beta", "response", "spread", "quantile")),
-    "at-most": (at_most, ("band", "limit"), ("mu", "beta", "response")),
-    "no-stop": (no_stop, ("band",), ("mu",)),
-    "stuck": (stuck, ("band",), ("mu",)),
-    "margin": (margin, ("r", "beta"), ("mu",)),
-}
 
 #: Keys of the table `response`.
 _OF_RESPONSE = ("quantity", "mass", "contact")
-
-#: Questions that take a number of threads.
-_THREADED = ("least-peak", "two-forces", "robust", "at-most")
 
 
 @dataclass(frozen=True)
@@ -64,15 +51,15 @@ def load_design(path: str | Path, overrides: Sequence[str] = (), threads: int | 
     axes = further_axes(tree)
     given = design_table(tree)
     try:
-        question = checks.choice(given.get("question", QUESTIONS[0]), "question", QUESTIONS)
-        arguments = _with_samples(question, _arguments(question, given), axes)
+        names = tuple(one.name for one in RECORDS)
+        question = record(checks.choice(given.get("question", names[0]), "question", names))
+        arguments = _with_samples(question.name, _arguments(question, given), axes)
     except InputError as error:
         raise (within("design", error) if error.where else error) from None
-    function = _FUNCTIONS[question][0]
-    if question in _THREADED:
+    if question.of_response:
         arguments["threads"] = threads
-    ask = partial(_call_question, function, common.system, {**arguments, "units": common.units})
-    return Design(common.title, path.stem, text, (*common.files, *files), question, ask)
+    ask = partial(_call_question, question.function, common.system, {**arguments, "units": common.units})
+    return Design(common.title, path.stem, text, (*common.files, *files), question.name, ask)
 
 
 def _with_samples(question: str, arguments: dict[str, Any], axes: Mapping[str, Any] | None) -> dict[str, Any]:
@@ -110,13 +97,13 @@ def _call_question(
         raise within("design.response" if error.where in _OF_RESPONSE else "design", error) from None
 
 
-def _arguments(question: str, given: Mapping[str, Any]) -> dict[str, Any]:
+def _arguments(question: Question, given: Mapping[str, Any]) -> dict[str, Any]:
     """Arguments of the function of a question, from the keys that it uses."""
-    _, needed, optional = _FUNCTIONS[question]
-    for key in needed:
-        if key not in given:
-            raise InputError(key, f"must be given for question {question}; got nothing")
-    arguments = {key: given[key] for key in (*needed, *optional) if key in given}
+    for key in question.needed:
+        if key.name not in given:
+            raise InputError(key.name, f"must be given for question {question.name}; got nothing")
+    names = [key.name for key in (*question.needed, *question.optional)]
+    arguments = {name: given[name] for name in names if name in given}
     response = _response(arguments.pop("response", {}))
     return arguments | response
 

@@ -10,8 +10,8 @@ from .. import checks
 from ..errors import InputError
 from ..model.contact import Contact
 from ..model.system import System
-from .least_peak import Optimum, bracket, find_optimum, largest
 from .minimum import Points, local_minima, lowest
+from .optimum import Optimum, bracket, find_optimum, largest
 from .performance import PerformanceCurve
 from .task import SEARCHED, Task
 

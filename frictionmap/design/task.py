@@ -97,6 +97,22 @@ def checked_task(
     return Task(system, found, asked, mu, low, high, threads, units, scales)
 
 
+def checked_number(given: Any, name: str, kind: str, scales: Scales, **ends: float) -> float:
+    """Check one number, which may have a unit: a ratio."""
+    found = ratios(given, name, kind, scales)
+    return checks.number(
+        found[0] if isinstance(found, list) and not isinstance(given, list) else found, name, **ends
+    )
+
+
+def checked_boundary(system: Any, band: Any, mu: Any, units: Units | None) -> tuple[Band, Scales]:
+    """Check the arguments of questions about boundaries."""
+    checks.instance(system, "system", System)
+    scales = scales_of(units, system)
+    checks.number(mu, "mu", least=1.0)
+    return checked_band(band, scales), scales
+
+
 def _checked_range(beta: Any, scales: Scales) -> tuple[float, float]:
     ends = checks.axis(ratios(beta, "beta", KINDS["beta"], scales), "beta", least=0.0)
     if ends.size != 2:

@@ -1,14 +1,15 @@
 """The goal of a design, as the page asks for it: the friction that meets it over a band of frequencies."""
 
-from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
-from .. import checks, design, regimes
+from .. import checks, regimes
+from ..datasets.questions import record
 from ..design.band import checked_band
+from ..design.questions import AT_MOST, RECORDS
+from ..design.questions.record import Question
 from ..design.watching import watched
 from ..errors import InputError, NoSteadyState
 from ..units.scales import NO_SCALES
@@ -16,11 +17,11 @@ from .queries import Query, needed, number
 from .subjects import Subject, subjects_of
 from .views import Follower, View
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 #: Keys of a query for a goal.
 GOAL = ("goal", "band", "of", "limit", "page", "turn")
-
-#: The range of friction around the least peak is that in which the peak is at most this multiple of it.
-NEAR = 1.05
 
 
 class Goal(NamedTuple):
@@ -32,6 +33,20 @@ class Goal(NamedTuple):
     limit: float | None  # that the response stays within
 
 
+def goals() -> tuple[Question, ...]:
+    """The questions that are goals on the page."""
+    return tuple(one for one in RECORDS if one.goal is not None)
+
+
+def describe_goals() -> list[dict[str, Any]]:
+    """Goals for the page: key, label, whether they are about a response, and whether it has a limit."""
+    return [
+        {"key": one.name, "label": one.goal.label, "response": one.of_response, "limit": one.has_limit}
+        for one in goals()
+        if one.goal is not None
+    ]
+
+
 def goal_of(query: Query) -> Goal:
     """Requested goal; its band and limit are checked when it is answered.
 
@@ -41,13 +56,13 @@ def goal_of(query: Query) -> Goal:
         A key is missing, or its value is invalid.
     """
     given = query.given
-    question = checks.choice(needed(given, "goal"), "goal", tuple(_ANSWERS))
+    question = checks.choice(needed(given, "goal"), "goal", tuple(one.name for one in goals()))
     band = tuple(number(part, "band") for part in needed(given, "band").split(","))
-    if question in ("no-stop", "stuck"):
+    if not record(question).of_response:
         return Goal(question, band, None, None)
     known = {one.key: one for one in subjects_of(query.view.system)}
     subject = known[checks.choice(given.get("of", next(iter(known))), "of", tuple(known))]
-    limit = number(needed(given, "limit"), "limit") if question == "at-most" else None
+    limit = number(needed(given, "limit"), "limit") if record(question).has_limit else None
     return Goal(question, band, subject, limit)
 
 
@@ -57,7 +72,8 @@ def answer_goal(view: View, goal: Goal, follower: Follower) -> dict[str, Any]:
     `beta` is the friction ratio (None: infinite), `ranges` are those that meet the goal, from and to (None:
     without end).  About a response: `peak`, the largest one over the band, `peaks` where it is reached, with
     regime and stops, the `kind` of the optimum, and a `caution` if there is one.  About a boundary: `r`, the
-    frequency that decides, and with mu > 1 `some`, the friction with which it is so from some starts.
+    frequency that decides, and with mu > 1 `some`, the friction with which it is so from some starts.  `rows`
+    are those of its summary.
 
     Raises
     ------
@@ -66,43 +82,29 @@ def answer_goal(view: View, goal: Goal, follower: Follower) -> dict[str, Any]:
     """
     band = checked_band(list(goal.band), NO_SCALES)
     replace(view, r=(band.low, band.high)).check()
+    question = record(goal.question)
+    limit = {} if goal.limit is None else {"limit": goal.limit}
     try:
         with watched(follower.watch):
-            found = _ANSWERS[goal.question](view, goal)
+            ds = _answer(question, view, goal, **limit)
+            ranges = question.goal.ranges(ds, lambda most: _answer(AT_MOST, view, goal, limit=most))
     except NoSteadyState as error:
         raise InputError(str(error)) from None
-    return {"goal": goal.question, "band": [band.low, band.high], **found}
+    found = _peaks_answer(ds) if question.of_response else _boundary_answer(ds)
+    return {
+        "goal": goal.question, "band": [band.low, band.high], **found, **limit,
+        "ranges": [[begin, _finite(end)] for begin, end in ranges],
+        "rows": [row for rows in question.rows for row in rows(ds)],
+    }  # fmt: skip
 
 
-def _answer_of(function: Callable[..., xr.Dataset], view: View, goal: Goal, **further: Any) -> xr.Dataset:
-    """The dataset of a question about a response."""
-    assert goal.subject is not None
-    return function(view.system, list(goal.band), mu=view.mu, **goal.subject.arguments, **further)
+def _answer(question: Question, view: View, goal: Goal, **limit: float) -> "xr.Dataset":
+    """The dataset of a question about the view of a goal."""
+    of = goal.subject.arguments if goal.subject is not None else {}
+    return question.function(view.system, list(goal.band), mu=view.mu, **of, **limit)
 
 
-def _least_peak(view: View, goal: Goal) -> dict[str, Any]:
-    found = _peaks_answer(_answer_of(design.least_peak, view, goal))
-    if not found["peak"]:
-        return {**found, "ranges": [[found["beta"], None]] if found["peak"] == 0.0 else []}
-    return {**found, "ranges": _ranges(_answer_of(design.at_most, view, goal, limit=NEAR * found["peak"]))}
-
-
-def _at_most(view: View, goal: Goal) -> dict[str, Any]:
-    ds = _answer_of(design.at_most, view, goal, limit=goal.limit)
-    return {**_peaks_answer(ds), "ranges": _ranges(ds), "limit": goal.limit}
-
-
-def _no_stop(view: View, goal: Goal) -> dict[str, Any]:
-    found = _boundary_answer(design.no_stop(view.system, list(goal.band), view.mu))
-    return {**found, "ranges": [] if found["beta"] == 0.0 else [[0.0, found["beta"]]]}
-
-
-def _stuck(view: View, goal: Goal) -> dict[str, Any]:
-    found = _boundary_answer(design.stuck(view.system, list(goal.band), view.mu))
-    return {**found, "ranges": [] if found["beta"] is None else [[found["beta"], None]]}
-
-
-def _boundary_answer(ds: xr.Dataset) -> dict[str, Any]:
+def _boundary_answer(ds: "xr.Dataset") -> dict[str, Any]:
     """The boundary; with mu > 1 also `some`, the friction with which it is so from some starts."""
     found = {"beta": _finite(ds["beta"]), "r": _finite(ds["at_r"])}
     for name in ("beta_no_stop_some_starts", "beta_stuck_some_starts"):
@@ -111,7 +113,7 @@ def _boundary_answer(ds: xr.Dataset) -> dict[str, Any]:
     return found
 
 
-def _peaks_answer(ds: xr.Dataset) -> dict[str, Any]:
+def _peaks_answer(ds: "xr.Dataset") -> dict[str, Any]:
     """The optimum and its peaks: the largest one, or two equal ones.  Where nothing moves from its friction
     on there are none, and `r` decides.  `peak` is None where it is infinite.
     """
@@ -135,19 +137,6 @@ def _regime(value: int) -> str:
     return "stick-slip" if value == regimes.STICK_SLIP else name.replace("_", " ")
 
 
-def _ranges(ds: xr.Dataset) -> list[list[float | None]]:
-    begins, ends = ds["interval_begin"].values, ds["interval_end"].values
-    return [[float(begin), _finite(end)] for begin, end in zip(begins, ends, strict=True)]
-
-
 def _finite(value: Any) -> float | None:
     """A number; None if it is infinite or NaN, which JSON lacks."""
     return float(value) if np.isfinite(value) else None
-
-
-_ANSWERS: Mapping[str, Callable[[View, Goal], dict[str, Any]]] = {
-    "least-peak": _least_peak,
-    "no-stop": _no_stop,
-    "stuck": _stuck,
-    "at-most": _at_most,
-}

@@ -3,6 +3,7 @@
 ===========  ===============================================================================
 module       what is in it
 ===========  ===============================================================================
+key          one key: meaning, default, valid values as JSON Schema
 keys         the keys of a configuration: meaning, default, valid values
 variants     CSV files of numbers that change together, for further axes
 config       configurations (TOML): read, overridden, checked key by key

@@ -7,7 +7,8 @@ one number per mass, stop after start, files that are there; and JSON has no dif
 from typing import Any
 
 from ..model.variations import CONTACT_NUMBERS, LISTS, NUMBERS
-from .keys import KEYS, TABLES, Key, Schema, axis, describe_values, number, several
+from .key import Key, Schema, axis, describe_values, number, several
+from .keys import KEYS, TABLES
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 

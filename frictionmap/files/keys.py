@@ -5,12 +5,10 @@ builds the schema that editors use.  Values are checked by `System`, `Solver`, `
 `checks.axis`, which own the ranges and names quoted here.
 """
 
-import re
-from collections.abc import Mapping
-from typing import Any, NamedTuple, get_args
+from typing import Any, get_args
 
 from .. import checks
-from ..datasets.design_labels import QUESTIONS
+from ..datasets.questions import records
 from ..model.contact import CONTACTS, MOST_CONTACTS
 from ..model.periodic_load import MOST_HARMONICS
 from ..model.settings import (
@@ -27,11 +25,10 @@ from ..model.settings import (
 )
 from ..model.system import DAMPING_REFERENCES, EXCITATIONS, System
 from ..units.axes import KINDS
-from ..units.quantities import EXAMPLES, NUMBER
+from ..units.quantities import EXAMPLES
 from ..units.scales import MODEL_HAS, OF_MODEL, UNIT_KINDS
-from ..units.table import spellings, units_of
-
-Schema = Mapping[str, Any]
+from ..units.table import units_of
+from .key import DOF, Key, Schema, axis, either, number, several, table, whole, with_unit, word
 
 #: Smallest and largest valid value of each axis of the grid.
 AXES: dict[str, dict[str, float]] = {
@@ -40,79 +37,11 @@ AXES: dict[str, dict[str, float]] = {
     "mu": {"least": 1.0},
 }
 
-
-class Key(NamedTuple):
-    """One key of a table."""
-
-    name: str
-    meaning: str
-    valid: Schema  # JSON Schema
-    default: Any = None  # None: no default that a file could state
-    example: str = ""  # TOML, where there is no default
-    words: str = ""  # the valid values in words, where the schema alone is hard to read
-
-
-def number(*, least: float | None = None, most: float | None = None, above: float | None = None) -> Schema:
-    """Schema of a number in a range."""
-    ends = {"minimum": least, "maximum": most, "exclusiveMinimum": above}
-    return {"type": "number", **{name: end for name, end in ends.items() if end is not None}}
-
-
-def whole(**ends: float) -> Schema:
-    """Schema of an integer in a range."""
-    return {**number(**ends), "type": "integer"}
-
-
-def word(*valid: str) -> Schema:
-    """Schema of one of several words."""
-    return {"enum": list(valid)}
-
-
-def several(item: Schema, least: int = 1, **more: Any) -> Schema:
-    """Schema of a list."""
-    return {"type": "array", "items": item, "minItems": least, **more}
-
-
-def either(*kinds: Schema) -> Schema:
-    """Schema of a value that matches any of several schemas."""
-    return {"anyOf": list(kinds)}
-
-
-def table(keys: Mapping[str, Schema], required: tuple[str, ...] = ()) -> Schema:
-    """Schema of a table without further keys."""
-    return {
-        "type": "object", "properties": dict(keys), "required": list(required),
-        "additionalProperties": False,
-    }  # fmt: skip
-
-
-def with_unit(kind: str) -> Schema:
-    """Schema of a number with a unit of the given kind."""
-    units = "|".join(re.escape(unit) for unit in spellings(kind))
-    return {"type": "string", "pattern": rf"^{NUMBER} ?({units})$"}
-
-
-def axis(kind: str, **ends: float) -> Schema:
-    """Schema of an axis: values or a range; `kind` is the kind of unit that values may have, or ""."""
-    value, step = number(**ends), number(above=0.0)
-    if kind:
-        value, step = either(value, with_unit(kind)), either(step, with_unit(kind))
-    edges = {"start": value, "stop": value}
-    return either(
-        value,
-        several(value),
-        table({"values": several(value)}, ("values",)),
-        table({**edges, "step": step}, ("start", "stop", "step")),
-        table({**edges, "num": whole(least=1, most=checks.MOST_CELLS)}, ("start", "stop", "num")),
-    )
-
-
 _TEXT: Schema = {"type": "string"}
 _NAME: Schema = {"type": "string", "minLength": 1}
 _RATIOS = several(number(above=0.0), prefixItems=[{"type": "number", "const": 1}])
 _ZETA = number(least=0.0, most=checks.LARGEST_DAMPING)
 _MATRIX = several(several(number()))
-_DOF = either(whole(least=1), {"type": "string", "pattern": r"^\d+\.\d+$"})
 _MATRICES = either(
     table(
         {"M": _MATRIX, "K": _MATRIX, "C": _MATRIX, "dofs": several(whole(least=1))},
@@ -149,7 +78,7 @@ def _unit(name: str, meaning: str) -> Key:
 
 
 _HARMONIC = {
-    "n": whole(least=1, most=MOST_HARMONICS), "mass": _DOF, "amplitude": number(), "phase_deg": number(),
+    "n": whole(least=1, most=MOST_HARMONICS), "mass": DOF, "amplitude": number(), "phase_deg": number(),
     "re": number(), "im": number(),
 }  # fmt: skip
 _NORMAL = several(table({name: valid for name, valid in _HARMONIC.items() if name != "mass"}, ("n",)))
@@ -210,7 +139,7 @@ GENERAL_KEYS = (
             table(
                 {
                     "kind": word(*CONTACTS),
-                    "masses": several(_DOF, maxItems=2),
+                    "masses": several(DOF, maxItems=2),
                     "ratio": either(number(least=0.0), _ELEMENTS),
                     "force": either(number(least=0.0), _ELEMENTS),
                     "mu": number(least=1.0),
@@ -228,6 +157,15 @@ GENERAL_KEYS = (
     ),
 )
 
+
+def _design_keys() -> tuple[Key, ...]:
+    """The question, and the keys of all questions."""
+    known = records()
+    names = tuple(record.name for record in known)
+    keys = {key.name: key for record in known for key in (*record.needed, *record.optional)}
+    return (Key("question", "what to find", word(*names), names[0]), *keys.values())
+
+
 #: Keys by table; "" is no table.
 KEYS: dict[str, tuple[Key, ...]] = {
     "": (Key("title", "title of plots and files", _TEXT, example='"A title"'),),
@@ -236,13 +174,13 @@ KEYS: dict[str, tuple[Key, ...]] = {
         _system_key(
             "contact_masses",
             "the mass in contact, or for between-masses the two masses A < B; counted from 1",
-            several(_DOF, maxItems=2),
+            several(DOF, maxItems=2),
             words='a list of one or two whole numbers >= 1, or of labels of a file, "NODE.DOF"',
         ),
         _system_key(
             "load_mass",
             "the mass on which the harmonic load acts, counted from 1",
-            _DOF,
+            DOF,
             words='a whole number >= 1, or a label of a file, "NODE.DOF"',
         ),
         Key(
@@ -283,7 +221,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "with matrices: reduce them to contact, load, the degrees of freedom to keep and some modes",
             table(
                 {
-                    "keep": several(_DOF, 0),
+                    "keep": several(DOF, 0),
                     "modes": whole(least=0),
                     "allow": number(above=0.0, most=1.0),
                 },
@@ -384,78 +322,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
         Key("harmonics", "highest harmonic; 0: none", whole(**RANGES["harmonics"]), _CURVES.harmonics),
     ),
-    "design": (
-        Key("question", "what to find", word(*QUESTIONS), QUESTIONS[0]),
-        Key(
-            "band",
-            "range of frequencies of the load",
-            several(either(number(above=0.0), with_unit("frequency")), 2, maxItems=2),
-            example="[0.3, 2.2]",
-            words="two frequency ratios > 0, increasing, or frequencies with units",
-        ),
-        Key(
-            "response",
-            "response to minimise: amplitude or first_harmonic of a mass, contact (the displacement in it) "
-            "or transmitted_force",
-            table(
-                {
-                    "quantity": word("amplitude", "first_harmonic", "contact", "transmitted_force"),
-                    "mass": _DOF,
-                    "contact": whole(least=1),
-                }
-            ),
-            example='{ quantity = "amplitude", mass = 1 }',
-            words="{ quantity, mass or contact }",
-        ),
-        Key("second", "for two-forces: contact whose ratio is varied, counted from 1", whole(least=1), 2),
-        Key(
-            "ratio",
-            "for two-forces: range of the ratio of that contact",
-            several(number(least=0.0), 2, maxItems=2),
-            [0.0, 2.0],
-            words="two numbers >= 0, increasing",
-        ),
-        Key("mu", "static-to-kinetic friction ratio", number(least=1.0), 1.0),
-        Key(
-            "limit",
-            "for at-most: the largest response allowed; displacements over P/k_1, forces over P",
-            either(number(above=0.0), with_unit("length"), with_unit("force")),
-            example="4.0",
-            words="a number > 0, or a length or force with its unit",
-        ),
-        Key(
-            "spread",
-            "for robust: relative uncertainty of the friction, up and down",
-            number(least=0.0),
-            example="0.2",
-            words="a number from 0 to below 1",
-        ),
-        Key(
-            "quantile",
-            "for robust with samples in [axes]: share of samples whose response stays below the peak",
-            number(above=0.0),
-            0.95,
-            words="a number above 0, up to 1",
-        ),
-        Key(
-            "beta",
-            "range of friction to search; for margin the friction of the working point",
-            either(
-                several(either(number(least=0.0), with_unit("force")), 2, maxItems=2),
-                number(above=0.0),
-                with_unit("force"),
-            ),
-            example="[0.02, 4.0]",
-            words="two friction ratios, increasing, or one; or forces with units",
-        ),
-        Key(
-            "r",
-            "for margin: the frequency of the working point",
-            either(number(above=0.0), with_unit("frequency")),
-            example="0.75",
-            words="a frequency ratio > 0, or a frequency with its unit",
-        ),
-    ),
+    "design": _design_keys(),
     "units": (
         _unit("natural_frequency", "frequency at r = 1: sqrt(k_1/m_1)/(2 pi), or frequency_scale/(2 pi)"),
         _unit("load", "friction force at beta = 1: the load amplitude P, or k_1 Y for base excitation"),
@@ -485,26 +352,3 @@ TABLES = {
 def names(section: str) -> tuple[str, ...]:
     """List the names of the keys of a table."""
     return tuple(key.name for key in KEYS[section])
-
-
-def describe_values(key: Key) -> str:
-    """Describe the valid values of a key in a few words."""
-    return key.words or _describe_schema(key.valid)
-
-
-def _describe_schema(valid: Schema) -> str:
-    if "enum" in valid:
-        *others, last = (f'"{one}"' for one in valid["enum"])
-        return f"{', '.join(others)} or {last}" if others else last
-    if "anyOf" in valid:
-        return " or ".join(_describe_schema(one) for one in valid["anyOf"])
-    if valid["type"] == "array":
-        some = "one or more of " if "enum" in valid["items"] else ""
-        return f"a list of {some}{_describe_schema(valid['items'])}"
-    words = {"integer": "a whole number", "number": "a number", "string": "text"}[valid["type"]]
-    ends = [
-        f"{sign} {valid[name]:g}"
-        for name, sign in (("exclusiveMinimum", ">"), ("minimum", ">="), ("maximum", "<="))
-        if name in valid
-    ]
-    return " ".join((words, " and ".join(ends))).strip()

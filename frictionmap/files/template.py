@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..datasets.provenance import value_text
-from .keys import KEYS, TABLES, Key, describe_values
+from .key import Key, describe_values
+from .keys import KEYS, TABLES
 
 _WIDTH = 100
 

@@ -8,7 +8,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -30,9 +30,6 @@ from .periodic_load import (
     scalar_harmonics,
     waveform,
 )
-
-if TYPE_CHECKING:
-    from .system import System
 
 #: Keys of a system that only this engine takes.
 KEYS = (
@@ -104,6 +101,9 @@ class Definition(Protocol):
 
     @property
     def general(self) -> "ContactSystem | None": ...
+
+
+_Definition = TypeVar("_Definition", bound=Definition)
 
 
 @dataclass(frozen=True)
@@ -236,9 +236,11 @@ def contacts_of(system: Definition) -> tuple[Contact, ...]:
     return (Contact(system.contact, system.contact_masses, **own),)
 
 
-def in_general_form(system: "System") -> "System":
+def in_general_form(system: _Definition) -> _Definition:
     """A system in the form that the general engine takes: with a list of contacts if it takes no other."""
-    return replace(system, contacts=contacts_of(system)) if system.general is None else system
+    if system.general is not None:
+        return system
+    return replace(system, contacts=contacts_of(system))  # type: ignore[type-var]  # a system is a dataclass
 
 
 def check_contacts(system: Definition) -> tuple[Contact, ...] | None:

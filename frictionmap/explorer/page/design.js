@@ -1,7 +1,7 @@
 // Goals of a design, and pinned designs: what they add to the page, and to its address.
 
 import { hashOf, systemKey } from "./address.js";
-import { VALID, queryOfGoal, goalOf, isComplete, noGoal, textOf } from "./goal.js";
+import { VALID, queryOfGoal, goalOf, isComplete, noGoal, offer, textOf } from "./goal.js";
 import { Handles } from "./handles.js";
 import { GoalPanel } from "./panel.js";
 import { NAMES, Pins } from "./pins.js";
@@ -24,6 +24,7 @@ export class Design {
   constructor(source, scene, does) {
     [this.source, this.scene, this.does] = [source, scene, does];
     this.live = source.live; // a page that is a file computes nothing
+    offer(scene.goals);
     this.goal = noGoal(scene);
     this.answer = null;
     this.key = ""; // of the goal and the system whose answer is shown or awaited

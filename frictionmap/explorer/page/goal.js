@@ -11,19 +11,21 @@ import { short } from "./axes.js";
  * @property {number | null} limit      largest response that is allowed, a ratio
  */
 
-/** Goals by their keys. */
-export const GOALS = {
-  "least-peak": "least peak of",
-  "no-stop": "no stops",
-  stuck: "always stuck",
-  "at-most": "never above",
-};
+/** Goals by their keys, as the server offers them: label, whether they are about a response, whether it has a limit. */
+export const GOALS = {};
 
-/** Goals that are about the response of a mass or a contact. */
-const OF_RESPONSE = ["least-peak", "at-most"];
+export function offer(goals) {
+  for (const goal of goals) GOALS[goal.key] = goal;
+}
 
+/** Whether a goal is about the response of a mass or a contact. */
 export function isOfResponse({ ask }) {
-  return OF_RESPONSE.includes(ask);
+  return GOALS[ask]?.response ?? false;
+}
+
+/** Whether a goal has a largest response that is allowed. */
+export function hasLimit({ ask }) {
+  return GOALS[ask]?.limit ?? false;
 }
 
 /** No goal, and the band that it begins with. @returns {Goal} */
@@ -34,14 +36,14 @@ export function noGoal(scene) {
 
 /** Whether all that a goal needs is known. */
 export function isComplete({ ask, limit }) {
-  return ask !== "" && (ask !== "at-most" || limit !== null);
+  return ask !== "" && (!hasLimit({ ask }) || limit !== null);
 }
 
 /** A goal as keys of a query. */
 export function queryOfGoal({ ask, band, of, limit }) {
   const query = { goal: ask, band: band.join(",") };
-  if (OF_RESPONSE.includes(ask)) query.of = of;
-  if (ask === "at-most") query.limit = limit;
+  if (isOfResponse({ ask })) query.of = of;
+  if (hasLimit({ ask })) query.limit = limit;
   return query;
 }
 
@@ -49,8 +51,8 @@ export function queryOfGoal({ ask, band, of, limit }) {
 export function textOf({ ask, band, of, limit }) {
   if (!ask) return "";
   const parts = [ask, band.join(",")];
-  if (OF_RESPONSE.includes(ask)) parts.push(of);
-  if (ask === "at-most" && limit !== null) parts.push(String(limit));
+  if (isOfResponse({ ask })) parts.push(of);
+  if (hasLimit({ ask }) && limit !== null) parts.push(String(limit));
   return parts.join(":");
 }
 
@@ -146,9 +148,12 @@ const SENTENCES = {
     : [`No friction holds over the whole band: stuck, the structure resonates without damping at ${place(answer.r, answer)}.`],
 };
 
+/** The rows of a summary: of goals without sentences of their own. */
+const listed = ({ rows }) => rows.map(([name, text]) => `${capital(name)}: ${text}.`);
+
 /** Describe the result for a goal in sentences. @param {object} answer  as the server sends it  @param {string} label  of its subject */
 export function sentencesOf(answer, label) {
-  return SENTENCES[answer.goal](answer, label);
+  return (SENTENCES[answer.goal] ?? listed)(answer, label);
 }
 
 /** The optimum in a few words. */
@@ -164,6 +169,6 @@ export function wordsOf(goal, label, about) {
   const { frequency } = about.physical;
   const [low, high] = goal.band.map((r) => short(frequency ? r * frequency.factor : r));
   const band = frequency ? `${low} to ${high} ${frequency.unit}` : `r ${low} to ${high}`;
-  const limit = goal.ask === "at-most" && goal.limit !== null ? ` ${lengthOf(goal.limit, about)},` : "";
-  return `${GOALS[goal.ask]}${limit}${isOfResponse(goal) ? ` ${label}` : ""}, ${band}`;
+  const limit = hasLimit(goal) && goal.limit !== null ? ` ${lengthOf(goal.limit, about)},` : "";
+  return `${GOALS[goal.ask].label}${limit}${isOfResponse(goal) ? ` ${label}` : ""}, ${band}`;
 }

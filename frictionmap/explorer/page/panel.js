@@ -1,6 +1,6 @@
 // The panel of a goal: a menu of goals, the band of frequencies, a limit, and the answer in words.
 
-import { GOALS, isOfResponse, sentencesOf } from "./goal.js";
+import { GOALS, hasLimit, isOfResponse, sentencesOf } from "./goal.js";
 import { paragraph } from "./dom.js";
 
 const TEMPLATE = `
@@ -34,7 +34,7 @@ export class GoalPanel {
     this.root = document.createElement("details");
     [this.root.className, this.root.open, this.root.innerHTML] = ["goal", true, TEMPLATE];
     form.append(this.root);
-    for (const [key, label] of Object.entries(GOALS)) this.#part("#goal").add(new Option(label, key));
+    for (const { key, label } of Object.values(GOALS)) this.#part("#goal").add(new Option(label, key));
     this.#part("#goal").addEventListener("change", ({ target }) => does.change({ ask: target.value }));
     this.#part("#goal-of").addEventListener("change", ({ target }) => does.change({ of: target.value }));
     this.#part("#goal-limit").addEventListener("change", ({ target }) => this.#onLimit(target.valueAsNumber));
@@ -81,7 +81,7 @@ export class GoalPanel {
     this.#part("#goal").value = goal.ask;
     this.#part("#goal-of").value = goal.of;
     this.#part(".of").hidden = !isOfResponse(goal);
-    this.#part(".limit").hidden = goal.ask !== "at-most";
+    this.#part(".limit").hidden = !hasLimit(goal);
     this.#part(".band").hidden = !goal.ask;
     const write = (field, value) => {
       if (document.activeElement !== field || !field.value) field.value = value;

@@ -6,7 +6,8 @@
 from typing import Any
 
 from ...files.json_schema import DIALECT, described, keyed_table
-from ...files.keys import GENERAL_KEYS, KEYS, Key, either, number, several, table, whole, with_unit, word
+from ...files.key import Key, either, number, several, table, whole, with_unit, word
+from ...files.keys import GENERAL_KEYS, KEYS
 from ...model.system import DAMPING_REFERENCES
 from ...units.table import COLUMN_UNITS, UNITS, units_of
 from ..chain.data import MOST_MASSES

@@ -1,14 +1,15 @@
 """`plot_design`: the picture of the result of a design question."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Unpack
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, NamedTuple, Unpack
 
 import xarray as xr
 from matplotlib.axes import Axes
 
+from ...datasets.questions import record
 from ..drawing import with_options
 from ..options import FigureOptions, current
-from ..panels import distinct, given_axes, legend_below, new_figure, title_figure
+from ..panels import Handle, distinct, given_axes, legend_below, new_figure, title_figure
 from ..shapes import check_holds, to_draw
 from ..words import caption
 from .limits import draw_limits
@@ -19,6 +20,22 @@ if TYPE_CHECKING:
 
 #: Size of a panel [inch].
 _WIDTH, _HEIGHT = 5.4, 4.0
+
+
+class _Panel(NamedTuple):
+    """A part of a picture, and the variables that it draws."""
+
+    draw: Callable[[Axes, xr.Dataset], list[Handle]]
+    needs: tuple[str, ...]
+
+
+#: Panels by the names that records of questions give them.
+_PANELS = {
+    "performance": _Panel(draw_performance, ("peak_of_beta", "peak")),
+    "responses": _Panel(draw_responses, ("peak", "response_of_r", "curve")),
+    "ridge": _Panel(draw_ridge, ("ratio_search", "peak_of_ratio", "beta_of_ratio", "second", "second_ratio")),
+    "limits": _Panel(draw_limits, ("r_search",)),
+}
 
 
 @with_options
@@ -52,14 +69,10 @@ def plot_design(
     """
     ds = to_draw(ds, "plot_design", "design")
     check_holds(ds, ("question", "beta"), "its answer")
-    of_peaks = "peak_of_beta" in ds
-    names = ("peak_of_beta", "peak", "response_of_r", "curve") if of_peaks else ("r_search",)
-    check_holds(ds, names, "its answer")
-    of_ratios = {"ratio_search", "peak_of_ratio", "beta_of_ratio", "second", "second_ratio"} <= set(
-        ds.variables
-    )
-    parts = [draw_performance, draw_responses, *[draw_ridge] * of_ratios] if of_peaks else [draw_limits]
-    draw = current().chosen(parts)
+    parts = [_PANELS[name] for name in record(str(ds["question"].values)).panels]
+    for part in parts:
+        check_holds(ds, part.needs, "its answer")
+    draw = current().chosen([part.draw for part in parts])
     if ax is None:
         columns = current().columns(len(draw))
         rows = -(-len(draw) // columns)

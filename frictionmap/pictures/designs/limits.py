@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from ...datasets.questions import record
 from ..palette import LIM, LINES, STICK, LineStyle
 from ..panels import Handle
 from ..second_axes import frequency_on_top, on_the_right
@@ -31,17 +32,12 @@ def draw_limits(ax: Axes, ds: xr.Dataset) -> list[Handle]:
             handles += ax.plot(r, np.where(np.isfinite(values), values, np.nan), **style)
     shown = [_SHOWN * beta] if np.isfinite(beta) and beta > 0.0 else []
     top = max([*shown, *(2.0 * one for one in tops)], default=1.0) or 1.0
-    question = str(ds["question"].values)
-    words = {
-        "no-stop": f"most friction without a stop: β = {beta:.4g}",
-        "stuck": f"least friction that holds: β = {beta:.4g}",
-        "margin": f"working point: β = {beta:.4g}",
-    }
     mark: dict[str, Any] = {"color": LINES[4], "marker": "o", "markersize": 6.0}
     if np.isfinite(beta) and "at_r" in ds:
         ax.axhline(beta, color=LINES[4], linewidth=0.9, linestyle=":")
         ax.plot([float(ds["at_r"])], [beta], zorder=4.0, **mark)
-        handles.append(Line2D([], [], linestyle=":", label=words.get(question, "answer"), **mark))
+        name = record(str(ds["question"].values)).mark
+        handles.append(Line2D([], [], linestyle=":", label=f"{name}: β = {beta:.4g}", **mark))
     for name in ("nearest_r_on_beta_lim", "nearest_r_on_beta_stick"):
         if name in ds and r[0] <= float(ds[name]) <= r[-1]:
             ax.plot([float(ds[name])], [beta], "|", color=LINES[4], markersize=12.0)

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..errors import InputError, NoSteadyState
-from .least_peak import Optimum, describe_cells, find_optimum, largest
 from .minimum import Points, changes, crossing
+from .optimum import Optimum, describe_cells, find_optimum, largest
 from .performance import PerformanceCurve
 from .task import Task
 

@@ -1,0 +1,133 @@
+"""All friction with which a response stays within a limit over a band."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import checks
+from ...datasets.design_labels import beta_label
+from ...datasets.labels import Label
+from ...files.key import Key, either, number, with_unit
+from ...model.system import System
+from ...units.scales import Units, scales_of
+from .keys import BAND, OF_PEAKS
+from .record import Goal, Question, Ranges
+from .rows import LISTED, answer_rows, change_rows, peak_rows
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def at_most(
+    system: System,
+    band: Any,
+    limit: Any,
+    mass: int = 1,
+    mu: float = 1.0,
+    *,
+    quantity: str = "amplitude",
+    contact: int = 1,
+    beta: Any = None,
+    threads: int | None = None,
+    units: Units | None = None,
+) -> "xr.Dataset":
+    """Find all friction with which a response stays within a limit over a band of frequencies.
+
+    Parameters
+    ----------
+    limit : float or str
+        Largest response that is allowed, over P/k1 (Y), or of a force over P; with units also a length or a
+        force, such as "3 mm".
+    others
+        As in `least_peak`.
+
+    Returns
+    -------
+    xarray.Dataset
+        That of `least_peak`, with `interval_begin` and `interval_end` (interval): ranges of the friction
+        ratio.  A range may have no end: from `beta_stuck` on nothing changes.
+
+    Raises
+    ------
+    InputError
+        As `least_peak`; or the limit is below the least peak, which the message gives.
+    NoSteadyState
+        As `least_peak`.
+    """
+    from ..answers import peaks_answer
+    from ..ranges import find_ranges
+    from ..task import checked_number, checked_task
+
+    checks.instance(system, "system", System)
+    scales = scales_of(units, system)
+    kind = "force" if quantity == "transmitted_force" else "length"
+    value = checked_number(limit, "limit", kind, scales, above=0.0)
+    task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units)
+    curve = task.performance()
+    optimum, begins, ends = find_ranges(task, curve, value)
+    ranges = {"interval": np.arange(1, begins.size + 1), "interval_begin": begins, "interval_end": ends}
+    force = scales.of("force")
+    if force is not None:
+        ranges |= {"interval_begin_N": begins * force, "interval_end_N": ends * force}
+    return peaks_answer("at-most", task, curve, optimum, {"limit": value}, ranges)
+
+
+def allowed_ranges(ds: "xr.Dataset") -> Ranges:
+    """The friction that is allowed."""
+    return list(zip(ds["interval_begin"].values.tolist(), ds["interval_end"].values.tolist(), strict=True))
+
+
+def _range_rows(ds: "xr.Dataset") -> Iterator[tuple[str, str]]:
+    """The ranges of friction."""
+    if not {"interval_begin", "interval_end"} <= set(ds):
+        return
+    begins, ends = ds["interval_begin"].values, ds["interval_end"].values
+    for k, (begin, end) in enumerate(zip(begins[:LISTED], ends[:LISTED], strict=True)):
+        words = f"{begin:.9g} to {end:.9g}" if np.isfinite(end) else f"{begin:.9g} or more"
+        if {"interval_begin_N", "interval_end_N"} <= set(ds):
+            words += f" ({ds['interval_begin_N'].values[k]:.6g} to {ds['interval_end_N'].values[k]:.6g} N)"
+        limit = f" for at most {float(ds['limit']):.6g}" if "limit" in ds else ""
+        yield (f"friction ratio beta{limit}" if k == 0 else ""), words
+
+
+_LIMIT = Key(
+    "limit",
+    "for at-most: the largest response allowed; displacements over P/k_1, forces over P",
+    either(number(above=0.0), with_unit("length"), with_unit("force")),
+    example="4.0",
+    words="a number > 0, or a length or force with its unit",
+)
+
+AT_MOST = Question(
+    name="at-most",
+    title="Friction that keeps a response within a limit",
+    function=at_most,
+    needed=(BAND, _LIMIT),
+    optional=OF_PEAKS,
+    labels={
+        "limit": Label(np.float64, "largest response that is allowed", (), least=0.0),
+        "interval": Label(np.int64, "interval, counted from 1", ("interval",), least=1),
+        "interval_begin": beta_label("friction ratio at which an allowed range begins", ("interval",)),
+        "interval_end": beta_label("friction ratio at which an allowed range ends", ("interval",)),
+        "interval_begin_N": Label(
+            np.float64,
+            "friction force at which an allowed range begins",
+            ("interval",),
+            least=0.0,
+            inf=True,
+            units="N",
+        ),
+        "interval_end_N": Label(
+            np.float64,
+            "friction force at which an allowed range ends",
+            ("interval",),
+            least=0.0,
+            inf=True,
+            units="N",
+        ),
+    },
+    rows=(answer_rows, peak_rows, change_rows, _range_rows),
+    panels=("performance", "responses"),
+    goal=Goal("never above", lambda ds, _: allowed_ranges(ds)),
+)

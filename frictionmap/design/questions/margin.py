@@ -1,0 +1,120 @@
+"""How far a working point is from the boundaries of its regime."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import checks
+from ...datasets.design_labels import beta_label, r_label
+from ...datasets.labels import Label
+from ...files.key import Key, either, number, with_unit
+from ...model.system import System
+from ...units.axes import KINDS
+from ...units.scales import Units, scales_of
+from .keys import BETA, MU
+from .record import Question
+from .rows import friction_rows
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units | None = None) -> "xr.Dataset":
+    """Find how far a working point is from the boundaries of its regime, in friction and in frequency.
+
+    Parameters
+    ----------
+    system, mu, units
+        As in `least_peak`.
+    r : float
+        Frequency ratio of the working point, > 0; with units also a frequency.
+    beta : float
+        Its friction ratio, > 0; with units also a force.
+
+    Returns
+    -------
+    xarray.Dataset
+        `beta_lim` and `beta_stick` at r, `margin_beta_lim` and `margin_beta_stick`: how much they are above
+        beta, relative to beta; `nearest_r_on_beta_lim` and `nearest_r_on_beta_stick`, the nearest frequencies
+        within a factor of ten at which a boundary is beta (NaN: none), `margin_r` and `margin_r_stick`: how
+        far they are, relative to r.  With mu > 1 the boundaries are those of some initial states.
+
+    Raises
+    ------
+    InputError
+        An argument has the wrong type or is out of range.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.design.margin(fm.System(damping_ratios=0.01), r=0.75, beta=0.6)
+    >>> round(100 * ds.margin_beta_lim.item(), 6), round(100 * ds.margin_r.item(), 6)
+    (27.535839, -14.57624)
+    """
+    from ..answers import answer, boundaries_over
+    from ..band import Band
+    from ..limits import has_no_stop_limit, no_stop_limit, stick_limit
+    from ..nearest import around, nearest, no_stop_at, stick_at
+    from ..task import checked_number
+
+    checks.instance(system, "system", System)
+    scales = scales_of(units, system)
+    r = checked_number(r, "r", KINDS["r"], scales, above=0.0, most=checks.LARGEST_RATIO)
+    beta = checked_number(beta, "beta", KINDS["beta"], scales, above=0.0)
+    mu = checks.number(mu, "mu", least=1.0)
+    found: dict[str, Any] = {"at_r": r, "beta": beta, "mu": mu}
+    limits: dict[str, tuple] = {"beta_stick": (stick_limit, stick_at, "margin_r_stick")}
+    if has_no_stop_limit(system):
+        limits["beta_lim"] = no_stop_limit, no_stop_at, "margin_r"
+    low = 0.5 * r
+    for name, (limit, at, margin_r) in limits.items():
+        value, line = float(limit(system, np.array([r]), mu)[0]), at(system, beta, mu)
+        place = nearest(line, r)
+        low = max(low, around(line, r).low)
+        found |= {name: value, f"margin_{name}": value / beta - 1.0}
+        found |= {f"nearest_r_on_{name}": place, margin_r: place / r - 1.0}
+    shown = Band(low, 2.0 * r)
+    found |= boundaries_over(system, shown, mu)
+    return answer("margin", system, shown, found, {"r": r, "beta": beta, "mu": mu}, units, scales)
+
+
+def _margin_rows(ds: "xr.Dataset") -> Iterator[tuple[str, str]]:
+    """The working point, and its distances from the boundaries in friction and in frequency."""
+    yield from friction_rows(ds, "working point: beta", "working point: r")
+    for name, words in (("beta_lim", "to stops (beta_lim)"), ("beta_stick", "to sticking (beta_stick)")):
+        if f"margin_{name}" in ds and np.isfinite(float(ds[f"margin_{name}"])):
+            yield f"friction {words}", f"{100.0 * float(ds[f'margin_{name}']):+.6g} %"
+    for name, words in (("margin_r", "to stops"), ("margin_r_stick", "to sticking")):
+        if name in ds and np.isfinite(float(ds[name])):
+            yield f"frequency {words}", f"{100.0 * float(ds[name]):+.6g} %"
+
+
+_R = Key(
+    "r",
+    "for margin: the frequency of the working point",
+    either(number(above=0.0), with_unit("frequency")),
+    example="0.75",
+    words="a frequency ratio > 0, or a frequency with its unit",
+)
+
+MARGIN = Question(
+    name="margin",
+    title="Margins of a working point",
+    function=margin,
+    needed=(_R, BETA),
+    optional=(MU,),
+    labels={
+        "beta_lim": beta_label("boundary of motion without stops at the working point", nan=True),
+        "beta_stick": beta_label("boundary to permanent sticking at the working point"),
+        "margin_beta_lim": Label(np.float64, "beta_lim/beta - 1", (), least=-1.0, nan=True, inf=True),
+        "margin_beta_stick": Label(np.float64, "beta_stick/beta - 1", (), least=-1.0, inf=True),
+        "nearest_r_on_beta_lim": r_label("nearest frequency ratio at which beta_lim is beta", nan=True),
+        "nearest_r_on_beta_stick": r_label("nearest frequency ratio at which beta_stick is beta", nan=True),
+        "margin_r": Label(np.float64, "nearest_r_on_beta_lim/r - 1", (), least=-1.0, nan=True),
+        "margin_r_stick": Label(np.float64, "nearest_r_on_beta_stick/r - 1", (), least=-1.0, nan=True),
+    },
+    rows=(_margin_rows,),
+    panels=("limits",),
+    mark="working point",
+)

@@ -1,0 +1,74 @@
+"""The least friction that holds over a band."""
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from ...model.system import System
+from ...units.scales import Units
+from .keys import BAND, MU
+from .record import Goal, Question, Ranges
+from .rows import answer_rows
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def stuck(system: System, band: Any, mu: float = 1.0, *, units: Units | None = None) -> "xr.Dataset":
+    """Find the least friction that holds over a band: the largest beta_stick, or beta_noslip, theory.md 4.
+
+    With mu > 1 it holds whatever the initial state: mu beta_stick, with which kinetic friction is enough and
+    every motion comes to rest, theory.md 6.
+
+    Parameters
+    ----------
+    system, band, mu, units
+        As in `least_peak`.
+
+    Returns
+    -------
+    xarray.Dataset
+        `beta`, infinite where a structure that is held resonates without damping, and `at_r`, the frequency
+        that decides; `beta_lim_of_r` and `beta_stick_of_r` on `r_search`.  With mu > 1 also
+        `beta_stuck_some_starts`, the largest beta_stick, with which contacts that are stuck stay so (one
+        mass: from rest), and `beta_stuck_of_r`.
+
+    Raises
+    ------
+    InputError
+        An argument has the wrong type or is out of range.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> fm.design.stuck(fm.System(contact="joined-base-wall"), band=[0.5, 1.5]).beta.item()
+    2.25
+    """
+    from ..answers import answer, boundaries_over
+    from ..limits import largest_stick, starts_matter
+    from ..task import checked_boundary
+
+    checked, scales = checked_boundary(system, band, mu, units)
+    beta, r = largest_stick(system, checked, None)
+    found = {"beta": beta, "at_r": r, "mu": mu, **boundaries_over(system, checked, mu)}
+    if starts_matter(system, mu):
+        found["beta_stuck_some_starts"] = largest_stick(system, checked, mu).beta
+    return answer("stuck", system, checked, found, {"mu": mu}, units, scales)
+
+
+def _holding(ds: "xr.Dataset", _: Any) -> Ranges:
+    """The friction that holds."""
+    beta = float(ds["beta"])
+    return [(beta, math.inf)] if math.isfinite(beta) else []
+
+
+STUCK = Question(
+    name="stuck",
+    title="Least friction that holds",
+    function=stuck,
+    needed=(BAND,),
+    optional=(MU,),
+    rows=(answer_rows,),
+    panels=("limits",),
+    mark="least friction that holds",
+    goal=Goal("always stuck", _holding),
+)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import frictionmap as fm
-from frictionmap.design.least_peak import describe_cells
 from frictionmap.design.limits import Extreme
+from frictionmap.design.optimum import describe_cells
 from frictionmap.design.performance import Performance, Unclear
 from frictionmap.design.responses import Values
 from frictionmap.files.reading import read

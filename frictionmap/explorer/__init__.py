@@ -9,6 +9,7 @@ sliders            numbers of a system that can be changed
 scene              subject of a page: system, initial view, parameters that can be changed
 views              one view: changed system, ranges of r and beta, mu
 quantities         what the cells of a map show: classes of their regime, or a quantity
+queries            queries of the page, checked like a configuration
 lines              boundaries of a view: values, and how the page draws them
 pieces             pieces of a map for the page: cells, classes, quantities, boundaries
 example            cell whose motion the page opens with
@@ -18,7 +19,6 @@ sentences          a motion in sentences: what the contacts do, and why
 cell               one cell: its motion, and that from another initial state
 cut                response curves through a view
 subjects           responses that a goal can be about
-queries            queries of the page, checked like a configuration
 goal               the friction that meets the goal of a design
 packets            binary packets for the page
 presets            systems that the page offers besides its own

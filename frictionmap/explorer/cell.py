@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from .. import regimes
-from ..errors import NoSteadyState
+from .. import checks, regimes
+from ..errors import InputError, NoSteadyState
 from ..model.general import refuse_general
 from ..model.settings import Start
 from ..pictures.classes import of_cells
@@ -16,6 +16,7 @@ from .drawing import drawing_curves, drawing_of
 from .lines import line_values
 from .numbers import numbers_of
 from .quantities import counted_of
+from .queries import PAGE, Query, needed, number
 from .sentences import describe_motion
 from .views import Follower, View
 
@@ -26,6 +27,21 @@ _SAMPLES = 400
 _OTHER = 1e-6
 
 Packet = tuple[dict[str, Any], dict[str, np.ndarray]]
+
+#: Keys of its query.
+KEYS = ("at", *PAGE)
+
+
+def read(query: Query) -> tuple[float, float]:
+    """r and beta of a cell."""
+    parts = needed(query.given, "at").split(",")
+    if len(parts) != 2:
+        raise InputError(
+            f"at must be r and beta separated by a comma; got {checks.one_line(query.given['at'])}"
+        )
+    r, beta = (number(part, name) for part, name in zip(parts, ("r", "beta"), strict=True))
+    r = checks.number(r, "r", above=0.0, most=checks.LARGEST_RATIO)
+    return r, checks.number(beta, "beta", least=0.0)
 
 
 def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:

@@ -55,6 +55,9 @@ _BENCHMARK = {
     },
 }
 
+#: The same of work without a measurement: what a map and a motion need is there.
+_FEW = Compilation(1.0, 2)
+
 #: Turns of a loop, and the seconds that they took on that machine.
 _TURNS, _LOOP = 200_000, 0.006
 
@@ -92,7 +95,7 @@ class CompileTimes:
                 return self._known[group]
             self._slowness = self._slowness or _loop_time() / _LOOP
         work, _, kind = group.partition(" ")
-        benchmark = _BENCHMARK[kind][work]
+        benchmark = _BENCHMARK[kind].get(work, _FEW)
         return benchmark._replace(seconds=self._slowness * benchmark.seconds)
 
     def record(self, group: str, seconds: float, kernels: int) -> None:

@@ -1,12 +1,14 @@
 """Response curves through a view, along r or beta."""
 
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
+from .. import checks
 from ..model.settings import Quantity, curve_settings
 from ..pictures.classes import of_cells
 from .quantities import counted_of
+from .queries import PAGE, Query, needed, number, points_of
 from .views import Follower, View, middles
 
 Along = Literal["r", "beta"]
@@ -26,6 +28,18 @@ _OF_CONTACTS = {
     "work_friction": "work_friction",
 }
 _ALONG_R = {"held": "held_response", "limit": "limit_amplitude"}
+
+
+#: Keys of its query.
+KEYS = ("along", "place", "count", *PAGE)
+
+
+def read(query: Query) -> tuple[Along, float, int]:
+    """Axis of a cut, value of the other axis, number of points."""
+    valid: tuple[Along, ...] = get_args(Along)
+    along: Any = checks.choice(needed(query.given, "along"), "along", valid)
+    place = checks.number(number(needed(query.given, "place"), "place"), "place", least=0.0)
+    return along, place, points_of(query)
 
 
 def cut(

@@ -13,15 +13,15 @@ from ..design.questions.record import Question
 from ..design.watching import watched
 from ..errors import InputError, NoSteadyState
 from ..units.scales import NO_SCALES
-from .queries import Query, needed, number
+from .queries import PAGE, Query, needed, number
 from .subjects import Subject, subjects_of
 from .views import Follower, View
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Keys of a query for a goal.
-GOAL = ("goal", "band", "of", "limit", "page", "turn")
+#: Keys of its query.
+KEYS = ("goal", "band", "of", "limit", *PAGE)
 
 
 class Goal(NamedTuple):
@@ -47,7 +47,7 @@ def describe_goals() -> list[dict[str, Any]]:
     ]
 
 
-def goal_of(query: Query) -> Goal:
+def read(query: Query) -> tuple[Goal]:
     """Requested goal; its band and limit are checked when it is answered.
 
     Raises
@@ -59,11 +59,11 @@ def goal_of(query: Query) -> Goal:
     question = checks.choice(needed(given, "goal"), "goal", tuple(one.name for one in goals()))
     band = tuple(number(part, "band") for part in needed(given, "band").split(","))
     if not record(question).of_response:
-        return Goal(question, band, None, None)
+        return (Goal(question, band, None, None),)
     known = {one.key: one for one in subjects_of(query.view.system)}
     subject = known[checks.choice(given.get("of", next(iter(known))), "of", tuple(known))]
     limit = number(needed(given, "limit"), "limit") if record(question).has_limit else None
-    return Goal(question, band, subject, limit)
+    return (Goal(question, band, subject, limit),)
 
 
 def answer_goal(view: View, goal: Goal, follower: Follower) -> dict[str, Any]:

@@ -2,14 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple, get_args
+from typing import NamedTuple, get_args
 from urllib.parse import parse_qsl
 
 from .. import checks
 from ..errors import InputError
 from ..model.settings import Start
 from .contacts import shown_contact
-from .cut import Along
 from .quantities import CellQuantity, quantities_of
 from .scene import Scene, checked_range
 from .views import MOST_PIXELS, Piece, View
@@ -115,12 +114,10 @@ def _range(given: Mapping[str, str], name: str, default: tuple[float, float]) ->
     return checked_range([number(part, name) for part in parts], name)
 
 
-#: Keys of a page, of boundaries, of a piece of a map, of a cell, and of a cut.
+#: Keys of a page, of boundaries, and of a piece of a map.
 PAGE = ("page", "turn")
 LINES = ("count", *PAGE)
-PIECE = ("columns", "rows", "first", "last", "lines", "quantity", "page", "turn")
-CELL = ("at", "page", "turn")
-CUT = ("along", "place", "count", "page", "turn")
+PIECE = ("columns", "rows", "first", "last", "lines", "quantity", *PAGE)
 
 
 def piece_of(query: Query) -> tuple[CellQuantity, Piece]:
@@ -139,26 +136,6 @@ def lines_of(query: Query) -> int:
     return checks.whole(_whole(query.given, "lines", 0), "lines", least=0, most=MOST_PIXELS)
 
 
-def cell_of(query: Query) -> tuple[float, float]:
-    """r and beta of a cell."""
-    parts = needed(query.given, "at").split(",")
-    if len(parts) != 2:
-        raise InputError(
-            f"at must be r and beta separated by a comma; got {checks.one_line(query.given['at'])}"
-        )
-    r, beta = (number(part, name) for part, name in zip(parts, ("r", "beta"), strict=True))
-    r = checks.number(r, "r", above=0.0, most=checks.LARGEST_RATIO)
-    return r, checks.number(beta, "beta", least=0.0)
-
-
-def cut_of(query: Query) -> tuple[Along, float, int]:
-    """Axis of a cut, value of the other axis, number of points."""
-    valid: tuple[Along, ...] = get_args(Along)
-    along: Any = checks.choice(needed(query.given, "along"), "along", valid)
-    place = checks.number(number(needed(query.given, "place"), "place"), "place", least=0.0)
-    return along, place, points_of(query)
-
-
 def points_of(query: Query) -> int:
     """Number of points of a cut or of boundaries."""
     return checks.whole(_whole(query.given, "count"), "count", least=2, most=_MOST_POINTS)
@@ -168,5 +145,5 @@ def page_of(query: Query) -> tuple[str, int]:
     """Page that asks, and the number of its request; a later request cancels this one."""
     page = query.given.get("page", "")
     if len(page) > 64 or not page.isascii():
-        raise InputError(f"page must be at most 64 ASCII characters; got {checks.one_line(page)}")
+        raise InputError("page", f"must be at most 64 ASCII characters; got {checks.one_line(page)}")
     return page, checks.whole(_whole(query.given, "turn", 0), "turn", least=0)

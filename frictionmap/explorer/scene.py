@@ -106,7 +106,7 @@ def scene_of_system(
     """Make the scene of a system, from checked arguments."""
     checks.instance(system, "system", System)
     if not isinstance(title, str):
-        raise InputError(f"title must be text; got {checks.one_line(title)}")
+        raise InputError("title", f"must be text; got {checks.one_line(title)}")
     checks.choice(start, "start", get_args(Start))
     mu = checks.number(mu, "mu", least=1.0)
     scales = scales_of(units, system)  # they may not go with it

@@ -16,6 +16,7 @@ import threading
 from collections.abc import Callable
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from importlib import import_module
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import unquote, urlsplit
@@ -38,6 +39,15 @@ _NAMES = (_HOST, "localhost", "[::1]")
 
 #: Where links from elsewhere may lead.
 _DOORS = ("/", "/index.html")
+
+#: Kinds of answers about a view: the module, which has the `KEYS` of the query and `read`s what is asked for,
+#: and the function, which gives a packet, or a mapping for JSON.
+_VIEWS = {
+    "motion": ("cell", "motion"),
+    "others": ("cell", "others"),
+    "cut": ("cut", "cut"),
+    "goal": ("goal", "answer_goal"),
+}
 
 #: Seconds after which the last part of the rehearsal begins without a map.
 _LATER = 30.0
@@ -102,10 +112,7 @@ class Page:
             "/lines": self._lines,
             "/example": self._example,
             "/map": self._map,
-            "/motion": self._motion,
-            "/others": self._others,
-            "/cut": self._cut_answer,
-            "/goal": self._goal,
+            **{f"/{kind}": self._view_answer(kind) for kind in _VIEWS},
             "/configuration.toml": self._configuration,
             "/sizes": self._sizes,
             "/map.nc": self._download_answer(".nc"),
@@ -234,47 +241,25 @@ class Page:
             self.shown.set()
         return _packet((header, arrays))
 
-    def _motion(self, text: str, gone: Callable[[], bool]) -> Answer:
-        from .cell import motion
+    def _view_answer(self, kind: str) -> Callable[[str, Callable[[], bool]], Answer]:
+        """The answer of one function to a checked query, with the units of its results."""
 
-        return self._cell_answer("motion", motion, text, gone)
+        def answer(text: str, gone: Callable[[], bool]) -> Answer:
+            from . import queries
+            from .scene_description import units_of
 
-    def _others(self, text: str, gone: Callable[[], bool]) -> Answer:
-        from .cell import others
+            place, function = _VIEWS[kind]
+            module = import_module(f".{place}", __package__)
+            query = queries.read_query(self.scene, text, module.KEYS)
+            asked = module.read(query)
+            with self._enter(kind, query, gone) as job:
+                job.watch()
+                found = getattr(module, function)(query.view, *asked, job)
+            header, arrays = found if isinstance(found, tuple) else (found, None)
+            header = {**header, **units_of(self.scene, query.view)}
+            return _json(header) if arrays is None else _packet((header, arrays))
 
-        return self._cell_answer("others", others, text, gone)
-
-    def _cell_answer(self, kind: str, work: Callable, text: str, gone: Callable[[], bool]) -> Answer:
-        from . import queries
-        from .scene_description import units_of
-
-        query = queries.read_query(self.scene, text, queries.CELL)
-        cell = queries.cell_of(query)
-        with self._enter(kind, query, gone) as job:
-            job.watch()
-            header, arrays = work(query.view, *cell, job)
-        return _packet(({**header, **units_of(self.scene, query.view)}, arrays))
-
-    def _cut_answer(self, text: str, gone: Callable[[], bool]) -> Answer:
-        from . import queries
-        from .cut import cut
-        from .scene_description import units_of
-
-        query = queries.read_query(self.scene, text, queries.CUT)
-        line = queries.cut_of(query)
-        with self._enter("cut", query, gone) as job:
-            header, arrays = cut(query.view, *line, job)
-        return _packet(({**header, **units_of(self.scene, query.view)}, arrays))
-
-    def _goal(self, text: str, gone: Callable[[], bool]) -> Answer:
-        from . import goal, queries
-        from .scene_description import units_of
-
-        query = queries.read_query(self.scene, text, goal.GOAL)
-        asked = goal.goal_of(query)
-        with self._enter("goal", query, gone) as job:
-            found = goal.answer_goal(query.view, asked, job)
-        return _json({**found, **units_of(self.scene, query.view)})
+        return answer
 
     def _configuration(self, text: str, gone: Callable[[], bool]) -> Answer:
         from . import queries

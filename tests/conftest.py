@@ -21,8 +21,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the program does, befor
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-#: Files that take a minute or so, first: a worker that begins one of them last works on alone.  The first two
-#: need different kernels in their first minute, so that two workers do not compile the same ones.
+#: Files that take a minute or so, first: a worker that begins one of them last works on alone.
 LONGEST = (
     "test_quick_benchmarks.py", "test_contact_stiffness.py", "test_stores.py", "test_explore_goals_page.py",
     "test_explore_page.py", "test_fuzz.py", "test_explore_contacts_page.py", "test_explore_alive.py",
@@ -54,6 +53,18 @@ def pytest_configure(config: pytest.Config) -> None:
     """Let workers take files in the order of collection; xdist would take those with few tests last."""
     if hasattr(config.option, "loadscopereorder"):
         config.option.loadscopereorder = False
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Compile the kernels before several workers run all tests, so that none compiles what another does."""
+    config = session.config
+    workers = getattr(config.option, "numprocesses", None) or 0
+    whole = config.args_source is not pytest.Config.ArgsSource.ARGS and not config.option.collectonly
+    if workers > 1 and whole and os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0"):
+        import precompile  # imports the package: the cache of kernels is set by then
+
+        precompile.all_parts()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

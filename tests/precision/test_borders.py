@@ -69,14 +69,20 @@ WINDOWS = (
 )
 
 
+#: The chain's many borders take several seconds.
+NUMBERS = [0, pytest.param(1, marks=pytest.mark.slow), 2]
+
+
 @functools.cache
+def borders_in(system, r, beta, mu):
+    return fm.borders(system, r, beta, mu)
+
+
 def borders_of(number):
-    system, r, beta = WINDOWS[number]
-    return fm.borders(system, r, beta)
+    return borders_in(*WINDOWS[number], 1.0)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("number", range(len(WINDOWS)))
+@pytest.mark.parametrize("number", NUMBERS)
 def test_cells_next_to_borders_have_the_counts(number):
     """Points evenly along the borders, away from their ends, where two borders are next to each other."""
     system, ds = WINDOWS[number][0], borders_of(number)
@@ -111,7 +117,7 @@ def crossed(ds, r, low, high):
     return False
 
 
-@pytest.mark.parametrize("number", range(len(WINDOWS)))
+@pytest.mark.parametrize("number", NUMBERS)
 def test_every_change_of_count_in_a_map_is_on_a_border(number):
     system, (r0, r1), (b0, b1) = WINDOWS[number]
     ds = borders_of(number)
@@ -175,15 +181,14 @@ def test_reference_points_of_existence(reference_table):
     assert len(missing) <= 0.16 * len(points), missing[:5]
 
 
-@functools.cache
-def existence():
-    return fm.borders(WALL, [0.305, 0.336], [0.014, 0.07], 1.5)
+#: Where borders of mu = 1.5 end the existence of an orbit.
+EXISTING = (WALL, (0.305, 0.336), (0.014, 0.07), 1.5)
 
 
 @pytest.mark.slow
 def test_an_orbit_lives_on_the_stated_side():
     """Solved next to points of its border it is physical on one side only, where stops are stated."""
-    ds, checked = existence(), set()
+    ds, checked = borders_in(*EXISTING), set()
     for row in EXISTENCE:
         system, kind, r, beta = row
         place = border_at(Source(system, 1.5), r, beta)
@@ -247,15 +252,18 @@ def test_what_is_refused():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("mu", "r", "beta", "kinds"),
+    ("window", "kinds"),
     [
-        (1.0, [0.17, 0.5], [0.05, 1.0], {"graze", "slip-in-stop"}),
-        (1.3, [0.55, 0.6], [0.3, 0.5], {"turn/stop", "fold"}),  # continuous to turn/stop, where a fold begins
-        (1.5, [0.305, 0.336], [0.014, 0.07], {"turn/stop", "fold"}),  # as do stops of no length
+        ((*WINDOWS[2], 1.0), {"graze", "slip-in-stop"}),
+        (
+            (WALL, (0.55, 0.6), (0.3, 0.5), 1.3),
+            {"turn/stop", "fold"},
+        ),  # continuous to turn/stop, where a fold begins
+        (EXISTING, {"turn/stop", "fold"}),  # as do stops of no length
     ],
 )
-def test_boundaries_are_not_among_the_borders(mu, r, beta, kinds):
-    ds = fm.borders(WALL, r, beta, mu)
+def test_boundaries_are_not_among_the_borders(window, kinds):
+    ds, mu = borders_in(*window), window[-1]
     for x, y in zip(ds.border_r.values, ds.border_beta.values, strict=True):
         known = ~np.isnan(x)
         ends = fm.boundaries(WALL, x[known], mu=mu)

@@ -40,6 +40,7 @@ def coloured(rng, x, level=0.04, memory=0.9):
     return x + lfilter([1.0], [1.0, -memory], new)[300:]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("disturbed", [rounded, coloured])
 def test_intervals_have_their_nominal_coverage(disturbed):
     held = np.zeros(len(NAMES), dtype=int)
@@ -53,6 +54,7 @@ def test_intervals_have_their_nominal_coverage(disturbed):
     assert (held >= fewest(40)).all(), dict(zip(NAMES, held.tolist(), strict=True))
 
 
+@pytest.mark.slow
 def test_intervals_of_joint_fits_of_coarse_decays_have_their_nominal_coverage():
     held = 0
     for seed in range(20):

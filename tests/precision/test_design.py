@@ -1,5 +1,6 @@
 """Design questions against values of independent programs, brute force and closed forms."""
 
+import functools
 import itertools
 
 import numpy as np
@@ -212,6 +213,16 @@ def structures():
         )
 
 
+@functools.cache
+def limits_of_samples(low, high):
+    """Friction from which the contact of every sample is stuck, and below which none stops."""
+    band = [low, high]
+    return (
+        max(fm.design.stuck(one, band).beta.item() for one in structures()),
+        min(fm.design.no_stop(one, band).beta.item() for one in structures()),
+    )
+
+
 @pytest.mark.parametrize(("quantile", "rank"), [(0.8, 3), (1.0, 4), (0.5, 2)])
 def test_a_quantile_of_samples(quantile, rank):
     """No friction of a grid gives a lower quantile; that of the answer is that of maps over the band."""
@@ -223,8 +234,7 @@ def test_a_quantile_of_samples(quantile, rank):
     assert ranked.min() >= ds.peak.values[0] * (1.0 - 1e-4)  # maps miss peaks by as much
     assert ranked[4] == pytest.approx(ds.peak.values[0], rel=1e-4)
     assert ds.peak_of_sample.values == pytest.approx(sizes[:, 4], rel=1e-4)
-    assert ds.beta_stuck.item() == max(fm.design.stuck(one, band).beta.item() for one in structures())
-    assert ds.beta_no_stop.item() == min(fm.design.no_stop(one, band).beta.item() for one in structures())
+    assert (ds.beta_stuck.item(), ds.beta_no_stop.item()) == limits_of_samples(*band)
 
 
 def test_one_sample_is_a_structure():

@@ -117,7 +117,7 @@ def any_system(random):
 def test_no_crossing_of_dense_samples_is_nearer(seed):
     random = np.random.default_rng(seed)
     system, r = any_system(random), random.uniform(0.2, 3.0)
-    dense = np.union1d(np.geomspace(0.1 * r, 10.0 * r, 40_001), [r])
+    dense = np.union1d(np.geomspace(0.1 * r, 10.0 * r, 20_001), [r])
     values = stick_limit(system, dense, 1.0)
     near = values[(dense > 0.3 * r) & (dense < 3.0 * r)]
     beta = np.exp(random.uniform(*np.log([near.min() + 1e-3, 1.1 * near.max() + 2e-3])))

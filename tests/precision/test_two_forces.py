@@ -40,6 +40,7 @@ def test_brute_force_finds_nothing_better(answer):
     assert best * (1.0 - 1e-3) <= min(found) <= best * 1.02
 
 
+@pytest.mark.slow
 def test_the_answer_is_the_least_of_its_ridge(answer):
     k = int(answer.peak_of_ratio.values.argmin())
     assert answer.ratio_search.values[k] == answer.second_ratio.item()
@@ -49,6 +50,7 @@ def test_the_answer_is_the_least_of_its_ridge(answer):
     assert str(answer.kind.values) == "two equal peaks"
 
 
+@pytest.mark.slow
 def test_it_is_drawn_and_summarised(answer):
     assert len(fm.plot_design(answer)) == 3
     assert any(line.startswith("ratio of contact 2") for line in describe_design(answer))

@@ -1,6 +1,7 @@
 """Which module may know which: cheap start, kernels without objects, pictures in one place."""
 
 import ast
+import functools
 import importlib
 import os
 import pkgutil
@@ -21,16 +22,19 @@ SOURCES = sorted(PACKAGE.rglob("*.py"))
 HEAVY = ("numba", "xarray", "matplotlib", "scipy", "netCDF4", "pandas")
 
 
+@functools.cache
 def imported(path):
     """Absolute names of the modules a source file imports."""
     package = ["frictionmap", *path.relative_to(PACKAGE).parts[:-1]]
+    found = []
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            found += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             base = package[: len(package) - node.level + 1] if node.level else []
             module = ".".join(base + (node.module.split(".") if node.module else []))
-            yield from (f"{module}.{alias.name}" for alias in node.names)
+            found += [f"{module}.{alias.name}" for alias in node.names]
+    return found
 
 
 def run(code):

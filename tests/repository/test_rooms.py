@@ -1,6 +1,7 @@
 """The maps of the folders: each lists what is there, in the order of imports; CONTRIBUTING repeats them."""
 
 import ast
+import functools
 import re
 import sys
 
@@ -35,13 +36,16 @@ def test_the_map_begins_with_a_sentence():
         assert re.match(r"[A-Z].*\.$", text.splitlines()[0]), place(folder)
 
 
+@functools.cache
 def imported(path):
     """Names that a source file imports from the package, absolute."""
     package = path.relative_to(rooms.PACKAGE.parent).parts[:-1]
+    found = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.level:
             module = [*package[: len(package) - node.level + 1], *(node.module or "").split(".")]
-            yield from (".".join([*filter(None, module), alias.name]) for alias in node.names)
+            found |= {".".join([*filter(None, module), alias.name]) for alias in node.names}
+    return found
 
 
 def below(folder):

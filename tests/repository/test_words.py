@@ -6,6 +6,7 @@ the page in the browser, and docstrings of tests.  Two more lists are of names: 
 """
 
 import ast
+import functools
 import io
 import re
 import tokenize
@@ -124,6 +125,11 @@ PATTERNS = [(compiled(pattern), instead) for pattern, instead in BANNED]
 TEST_PATTERNS = [(compiled(pattern), instead) for pattern, instead in WORDS_OF_TESTS]
 
 
+@functools.cache
+def tree_of(path):
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
 def findings(texts):
     """All phrases of the list in some texts."""
     for place, text in texts:
@@ -173,7 +179,7 @@ def docstrings(tree, place):
 def python_texts(paths):
     """Docstrings and error messages of Python files."""
     for path in paths:
-        tree, place = ast.parse(path.read_text(encoding="utf-8")), str(path.relative_to(ROOT))
+        tree, place = tree_of(path), str(path.relative_to(ROOT))
         yield from docstrings(tree, place)
         yield from messages(tree, place)
 
@@ -221,7 +227,7 @@ def checked(paths):
 def functions(paths):
     """Names of functions, and where they are."""
     for path in paths:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(tree_of(path)):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
                 yield Text(f"{path.relative_to(ROOT)}:{node.lineno}", node.name)
 
@@ -245,7 +251,7 @@ def names_of_functions(names):
 def fragments(paths):
     """Docstrings that begin with a fragment."""
     for path in paths:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+        tree = tree_of(path)
         for place, text in docstrings(tree, str(path.relative_to(ROOT))):
             if re.match(rf"{FRAGMENTS}\b", text):
                 yield Finding(place, text.splitlines()[0], "a verb or a noun phrase")
@@ -309,7 +315,7 @@ def test_docstrings_and_messages():
 def test_further_texts():
     """Labels of variables, comments in files, lines that are printed; comments of the code."""
     for path in checked(PACKAGE):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+        tree = tree_of(path)
         assert not report(findings([*texts_within(tree, path.relative_to(ROOT)), *comments(path)]))
 
 
@@ -337,7 +343,7 @@ def test_names_of_tests():
 def test_docstrings_of_tests():
     paths = checked(sorted((ROOT / "tests").rglob("*.py")))
     for path in paths:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+        tree = tree_of(path)
         assert not report(findings(docstrings(tree, path.relative_to(ROOT))))
 
 

@@ -30,7 +30,7 @@ NAMES = ("border_r", "border_beta", "border_kind", "border_mu", "stops_below", "
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     folder = tmp_path_factory.mktemp("borders")
-    (folder / "b.toml").write_text(CONFIG.replace("start = 0.0, stop = 0.4", "start = 0.21, stop = 0.24"))
+    (folder / "b.toml").write_text(CONFIG.replace("start = 0.0, stop = 0.4", "start = 0.22, stop = 0.23"))
     assert (
         main(["boundaries", str(folder / "b.toml"), "--borders", "-o", str(folder / "b.nc"), "--quiet"]) == 0
     )

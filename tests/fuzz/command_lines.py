@@ -1,4 +1,7 @@
-"""Invalid command lines: arguments, overrides, and outputs in places where they must not be written."""
+"""Invalid command lines: overrides, inputs, and outputs in places where they must not be written.
+
+Invalid arguments are in the table of `specification/test_refusals.py`.
+"""
 
 from .configurations import Case
 from .verdict import Words
@@ -11,95 +14,6 @@ def _key(text: str) -> str:
     """Part of an override that a message must contain: its key, or the part of it that exists."""
     parts = " ".join(text.partition("=")[0].split())[:_LONG].split(".")
     return ".".join(parts[:2])
-
-
-def _arguments() -> list[tuple[str, Words]]:
-    """Unknown, missing, misspelt, abbreviated and repeated arguments, and arguments split by blanks."""
-    return [
-        ("", (("COMMAND", "command"),)),
-        ("frobnicate", (("frobnicate",),)),
-        ("maps c.toml", (("maps",),)),
-        ("Map c.toml", (("Map",),)),
-        ("c.toml", (("c.toml",),)),
-        ("map", (("CONFIG",),)),
-        ("boundaries", (("CONFIG",),)),
-        ("plot", (("FILE",),)),
-        ("info", (("FILE",),)),
-        ("response", (("CONFIG", "--r"),)),
-        ("map c.toml c.toml", (("c.toml",),)),
-        ("info m.nc b.nc", (("b.nc",),)),
-        ("plot m.nc b.nc", (("b.nc",),)),
-        ("map c.toml --frob", (("--frob",),)),
-        ("map c.toml -x", (("-x",),)),
-        ("map c.toml --output x.nc", (("--output",),)),
-        ("map c.toml --over", (("--over",),)),
-        ("map c.toml --overwrit", (("--overwrit",),)),
-        ("map c.toml -o taken.nc --over", (("--over",),)),
-        ("map c.toml -o x.nc --qui", (("--qui",),)),
-        ("map c.toml -o x.nc --thr 1", (("--thr",),)),
-        ("map c.toml -o x.nc --se title=a", (("--se",),)),
-        ("map c.toml -o x.nc --threads=1 --threads=2", (("--threads",),)),
-        ("map c.toml -o x.nc -o y.nc", (("-o",),)),
-        ("map c.toml -o", (("-o",),)),
-        ("map c.toml --set", (("--set",),)),
-        ("map c.toml --threads", (("--threads",),)),
-        ("map c.toml --overwrite=yes", (("--overwrite",),)),
-        ("map c.toml --quiet=1", (("--quiet",),)),
-        ("map c.toml -o x.nc --threads 0", (("threads",), ("0",))),
-        ("map c.toml -o x.nc --threads -1", (("threads",), ("-1",))),
-        ("map c.toml -o x.nc --threads 1.5", (("threads",), ("1.5",))),
-        ("map c.toml -o x.nc --threads two", (("threads",), ("two",))),
-        ("map c.toml -o x.nc --threads 1e1", (("threads",), ("1e1",))),
-        ("map c.toml -o x.nc --threads nan", (("threads",), ("nan",))),
-        ("map c.toml -o x.nc --threads=", (("threads",),)),
-        ("map c.toml --r 0.5", (("--r",),)),
-        ("boundaries c.toml --threads 2", (("--threads",),)),
-        ("boundaries c.toml --mu 2", (("--mu",),)),
-        ("plot m.nc --threads 2", (("--threads",),)),
-        ("plot m.nc --set title=a", (("--set",),)),
-        ("plot m.nc -o x.png -o y.png", (("-o",),)),
-        ("info m.nc -o x.txt", (("-o",),)),
-        ("info m.nc --overwrite", (("--overwrite",),)),
-        ("info --file m.nc", (("--file",),)),
-    ]
-
-
-def _responses() -> list[tuple[str, Words]]:
-    """Invalid cells of `response`."""
-    given = "response one.toml -o x.nc"
-    lines: list[tuple[str, Words]] = [
-        (given, (("--r",),)),
-        (f"{given} --r 0.5", (("--beta",),)),
-        (f"{given} --beta 0.5", (("--r",),)),
-        (f"{given} --r 0.5 --r 0.6 --beta 0.5", (("--r",),)),
-        (f"{given} --r 0.5 --beta 0.6 --beta 0.5", (("--beta",),)),
-        (f"{given} --r 0.5 --beta 0.6 --mu 1 --mu 2", (("--mu",),)),
-        (f"{given} --r 0.5 --beta 0.6 --m 1", (("--m",),)),
-        (f"{given} --r 0.5 --bet 0.6", (("--bet",),)),
-        (f"{given} --r 0.5 --beta 0.6 --threads 2", (("--threads",),)),
-        (f"{given} --r 0 --beta 0.5", (("r",), ("0",))),
-        ("response c.toml -o x.nc --r 0.5 --beta 0.5", (("--mu",),)),  # its grid has two
-    ]
-    for name, rest in (("r", "--beta 0.5"), ("beta", "--r 0.5"), ("mu", "--r 0.5 --beta 0.5")):
-        for value in (
-            "x",
-            "nan",
-            "inf",
-            "-inf",
-            "-1",
-            "1e999",
-            "0,5",
-            "1/2",
-            "0.5.1",
-            "1j",
-            "True",
-            "''",
-            "[1]",
-        ):
-            text = "" if value == "''" else value
-            says = ((name,), (text, "inf") if value == "1e999" else (text,))
-            lines.append((f"{given} {rest} --{name}={text}", says))
-    return [*lines, (f"{given} --r 0.5 --beta 0.5 --mu 0.5", (("mu",), ("0.5",)))]
 
 
 def _overrides() -> list[Case]:
@@ -199,7 +113,7 @@ def _inputs() -> list[tuple[str, Words]]:
 
 def command_lines() -> list[Case]:
     """All of them."""
-    split = [*_arguments(), *_responses(), *_outputs(), *_inputs()]
+    split = [*_outputs(), *_inputs()]
     cases = [Case(tuple(line.split()), says) for line, says in split]
     blank = [
         Case((verb, "", "-o", "x.nc"), ((verb, "CONFIG", "''", "configuration"),))

@@ -73,49 +73,24 @@ def assert_refused(capsys, folder, arguments, *words, status=2):
 # Bad configurations: what the message says
 
 BAD_CONFIGURATIONS = {
-    "not TOML": ("a = 1\nb = ,\n", ["configuration bad.toml: cannot parse as TOML", "line 2, column 5"]),
-    "TOML with a key given twice": (toml(top="title = 'a'\ntitle = 'b'"), ["bad.toml", "TOML", "line 2"]),
     "brackets without end": ("a = " + "[" * 5000, ["bad.toml", "TOML"]),
     "a number of thousands of digits": ("a = " + "1" * 5000, ["bad.toml", "TOML"]),
     # unknown keys, at each level
-    "unknown key": (toml(top="titel = 'x'"), ["unknown key 'titel'", "did you mean title?", "system, grid"]),
-    "unknown table": (toml() + "[sover]\n", ["unknown key 'sover'", "did you mean solver?"]),
     "unknown key with a line break": (toml(top='"a\\nb" = 1'), ["unknown key 'a\\nb'"]),
-    "unknown system key": (
-        toml(system="damping_ratio = 0.1"),
-        ["unknown key 'system.damping_ratio'", "did you mean damping_ratios?", "contact_masses"],
-    ),
-    "unknown system key, a word cut short": (
-        toml(system='matrix = "frame.npz"'),
-        ["unknown key 'system.matrix'", "did you mean matrices?", "frequency_scale", "damping_reference"],
-    ),
-    "unknown grid key": (toml(grid=GRID + "\nbetta = 1"), ["unknown key 'grid.betta'", "did you mean beta?"]),
-    "unknown solver key": (
-        toml(solver="tolerence = 1e-9"),
-        ["unknown key 'solver.tolerence'", "did you mean tolerance?", "cycles"],
-    ),
     "unknown axis key": (
         toml(grid="beta = 1\nr = { start = 0, stop = 1, stepp = 0.1 }"),
         ["unknown key 'grid.r.stepp'", "did you mean step?", "start, stop, step, num, values"],
     ),
-    "a key unlike all others": (toml(solver="zzz = 1"), ["unknown key 'solver.zzz'; valid: start, cycles"]),
     # missing and misplaced
-    "no system": ("[grid]\nr = 1\nbeta = 1", ["[system]", "none"]),
     "no grid": ("[system]", ["grid.r must be a number", "got nothing"]),
     "no beta": (toml(grid="r = 1"), ["grid.beta must be a number", "got nothing"]),
     "system is not a table": ("system = 5", ["system must be a table", "got 5"]),
-    "grid is a list": ("grid = [1]\n[system]", ["grid must be a table", "got [1]"]),
     # wrong types
-    "a number for text": (toml(top="title = 5"), ["title must be text", "got 5"]),
-    "a number for a word": (toml(system="contact = 1"), ["system.contact", "fixed-wall", "got 1"]),
     "text for a number": (toml(solver='tolerance = "1e-9"'), ["solver.tolerance must be a number", "'1e-9'"]),
-    "text for a whole number": (toml(solver='steps = "9"'), ["solver.steps must be a whole number", "'9'"]),
-    "a fraction for a whole number": (toml(solver="steps = 9.5"), ["solver.steps", "whole number", "9.5"]),
     "true for a number": (toml(system="damping_ratios = true"), ["system.damping_ratios", "number", "True"]),
     "true for a whole number": (toml(solver="cycles = true"), ["solver.cycles", "whole number", "True"]),
     "text in an axis": (toml(grid='r = [1, "2"]\nbeta = 1'), ["grid.r[1] must be a number", "'2'"]),
     "true in an axis": (toml(grid="r = [true]\nbeta = 1"), ["grid.r[0] must be a number", "True"]),
-    "text for an axis": (toml(grid='r = "1"\nbeta = 1'), ["grid.r", "a number, a list", "'1'"]),
     "true for an axis": (toml(grid="r = true\nbeta = 1"), ["grid.r", "a number, a list", "True"]),
     "a date for an axis": (toml(grid="r = 2020-01-01\nbeta = 1"), ["grid.r", "a number, a list", "2020"]),
     "text in an axis table": (
@@ -127,15 +102,9 @@ BAD_CONFIGURATIONS = {
         ["grid.r.num must be a whole number", "2.5"],
     ),
     # out of range
-    "mu < 1": (toml(grid=GRID + "\nmu = [0.5, 1.0]"), ["grid.mu must be >= 1", "0.5", "index 0"]),
-    "beta < 0": (toml(grid="r = 1\nbeta = [-0.25, 0.5]"), ["grid.beta must be >= 0", "-0.25", "index 0"]),
-    "r < 0": (toml(grid="r = [-1, 1]\nbeta = 1"), ["grid.r must be >= 0", "-1.0", "index 0"]),
     "r too large": (toml(grid="r = [1, 1e9]\nbeta = 1"), ["grid.r must be <= 1e+08", "index 1"]),
-    "zeta < 0": (toml(system="damping_ratios = -0.1"), ["system.damping_ratios must be >= 0", "-0.1"]),
     "zeta in a list < 0": (toml(system="damping_ratios = [-0.1]"), ["system.damping_ratios[0]", ">= 0"]),
-    "zeta too large": (toml(system="damping_ratios = 1e3"), ["system.damping_ratios must be <= 100", "1000"]),
     "zeta not finite": (toml(system="damping_ratios = nan"), ["system.damping_ratios", "finite", "nan"]),
-    "nan in an axis": (toml(grid="r = [0.5, nan]\nbeta = 1"), ["grid.r[1] must be finite", "nan"]),
     "inf in an axis": (toml(grid="r = 1\nbeta = [1, inf]"), ["grid.beta[1] must be finite", "inf"]),
     "inf for an axis": (toml(grid="r = inf\nbeta = 1"), ["grid.r must be finite", "inf"]),
     "nan as a start": (
@@ -143,90 +112,11 @@ BAD_CONFIGURATIONS = {
         ["grid.r.start must be finite", "nan"],
     ),
     "an integer beyond all doubles": (toml(grid=f"beta = 1\nr = 1{400 * '0'}"), ["grid.r", "finite", "inf"]),
-    "empty axis": (toml(grid="r = []\nbeta = 1"), ["grid.r must have at least one value", "none"]),
-    "empty values": (toml(grid="beta = 1\nr = { values = [] }"), ["grid.r must have at least one value"]),
-    "unsorted axis": (toml(grid="r = [1, 3, 2]\nbeta = 1"), ["grid.r must be increasing", "2.0 at index 2"]),
-    "a value twice": (toml(grid="r = [1, 1]\nbeta = 1"), ["grid.r must be increasing", "1.0 at index 1"]),
-    "axis table without keys": (toml(grid="r = {}\nbeta = 1"), ["grid.r must be", "{ start, stop, step }"]),
-    "axis table with step and num": (
-        toml(grid="beta = 1\nr = { start = 0, stop = 1, step = 0.5, num = 3 }"),
-        ["grid.r must be { start, stop, step }, { start, stop, num } or { values }", "step, num"],
-    ),
-    "axis table without stop": (
-        toml(grid="beta = 1\nr = { start = 0, step = 0.5 }"),
-        ["grid.r must be { start, stop, step }", "got start, step"],
-    ),
-    "step of zero": (
-        toml(grid="beta = 1\nr = { start = 0, stop = 1, step = 0 }"),
-        ["grid.r.step must be > 0", "got 0"],
-    ),
-    "step < 0": (
-        toml(grid="beta = 1\nr = { start = 0, stop = 1, step = -0.1 }"),
-        ["grid.r.step must be > 0", "got -0.1"],
-    ),
-    "num of zero": (
-        toml(grid="beta = 1\nr = { start = 0, stop = 1, num = 0 }"),
-        ["grid.r.num must be >= 1", "got 0"],
-    ),
-    "stop < start": (
-        toml(grid="beta = 1\nr = { start = 1, stop = 0.5, step = 0.1 }"),
-        ["grid.r.stop must be >= start (1)", "got 0.5"],
-    ),
     # solver
-    "one step": (toml(solver="steps = 1"), ["solver.steps must be >= 2", "got 1"]),
-    "no cycles": (toml(solver="cycles = 0"), ["solver.cycles must be >= 1", "got 0"]),
     "too many cycles": (toml(solver="cycles = 10_000_000_000"), ["solver.cycles must be <= 1e+09"]),
-    "a coarse tolerance": (toml(solver="tolerance = 1"), ["solver.tolerance must be <= 0.001", "got 1"]),
     "a tolerance of zero": (toml(solver="tolerance = 0"), ["solver.tolerance must be >= 1e-15", "got 0"]),
-    "unknown start": (
-        toml(solver='start = "movin"'),
-        ["solver.start", "rest, moving", "'movin'", "mean moving"],
-    ),
-    "unknown skip": (toml(solver='skip = "all"'), ["solver.skip", "exact, none", "'all'"]),
-    "unknown output": (
-        toml(solver='outputs = ["regime", "stop_per_cycle"]'),
-        ["solver.outputs must be one of regime,", "'stop_per_cycle'", "did you mean stops_per_cycle?"],
-    ),
-    "a number as an output": (toml(solver="outputs = [1]"), ["solver.outputs must be one of", "got 1"]),
-    "no outputs": (toml(solver="outputs = []"), ["solver.outputs must name at least one of regime,", "none"]),
-    "outputs as text": (toml(solver='outputs = "regime"'), ["solver.outputs must be a list", "'regime'"]),
     # system
-    "unknown contact": (
-        toml(system='contact = "fixed-wal"'),
-        ["system.contact must be one of fixed-wall, joined-base-wall", "'fixed-wal'", "mean fixed-wall?"],
-    ),
-    "no masses": (toml(system="mass_ratios = []"), ["system.mass_ratios", "at least one value"]),
-    "a mass of zero": (toml(system="mass_ratios = [0]"), ["system.mass_ratios[0] must be > 0", "got 0"]),
-    "a first mass that is not the unit": (
-        toml(system="mass_ratios = [2]"),
-        ["system.mass_ratios[0] must be 1"],
-    ),
     "a mass as text": (toml(system='mass_ratios = "1"'), ["system.mass_ratios must be a list", "'1'"]),
-    "springs and masses differ": (
-        toml(system="stiffness_ratios = [1, 2]"),
-        ["system.stiffness_ratios", "as many values as mass_ratios (1)", "got 2"],
-    ),
-    "between masses, of one": (
-        toml(system='contact = "between-masses"'),
-        ["system.contact must be fixed-wall or joined-base-wall", "'between-masses'"],
-    ),
-    "a second mass in contact": (
-        toml(system="contact_masses = [2]"),
-        ["system.contact_masses[0] must be <= 1", "got 2"],
-    ),
-    "two masses in contact": (
-        toml(system="contact_masses = [1, 2]"),
-        ["system.contact_masses must name one mass", "[1, 2]"],
-    ),
-    "a load on a second mass": (toml(system="load_mass = 2"), ["system.load_mass must be <= 1", "got 2"]),
-    "matrices that are not there": (
-        toml(system='matrices = "frame.npz"'),
-        ["system.matrices must be an .npz file with arrays M, K", "frame.npz: No such file or directory"],
-    ),
-    "a damping ratio too many": (
-        toml(system="damping_ratios = [0.1, 0.2]"),
-        ["system.damping_ratios must be one number, or one per mode (1)", "got 2"],
-    ),
 }
 
 
@@ -381,12 +271,6 @@ def test_a_folder_without_permission(folder, capsys):
     (folder / "closed").mkdir(mode=0o500)
     words = ["cannot write", "Permission denied"]
     assert_refused(capsys, folder, ["map", "good.toml", "-o", "closed/out.nc"], *words)
-
-
-@pytest.mark.parametrize("picture", ["picture.jpg", "picture", "picture.nc"])
-def test_wrong_picture_ending(folder, capsys, picture):
-    assert status_of("map good.toml -o ours.nc --quiet") == 0
-    assert_refused(capsys, folder, ["plot", "ours.nc", "-o", picture], ".png, .pdf, .svg", f"got {picture}")
 
 
 def test_a_map_that_cannot_be_drawn(folder, capsys):

@@ -298,15 +298,6 @@ def test_any_title_survives(base, tmp_path, title):
 @pytest.mark.parametrize(
     ("override", "message"),
     [
-        ("grid.r.step", r"^--set must be KEY=VALUE.*got 'grid\.r\.step'$"),
-        ("=3", r"^--set must be KEY=VALUE.*got '=3'$"),
-        ("grid..r=3", r"^--set must be KEY=VALUE.*got 'grid\.\.r=3'$"),
-        ("grid.r=", r"^--set must be KEY=VALUE.*got 'grid\.r='$"),
-        (
-            "grid.beta.step=1",
-            r"--set grid\.beta\.step=1: grid\.beta is not a table; .* now \[0\.0, 0\.5, 1\.0\]",
-        ),
-        ("title.x=1", r"--set title\.x=1: title is not a table; .* now 'Base'"),
         ("grid.r=" + "[" * 5000, r"^grid\.r must be a number, a list of numbers or a table; got '\[\[\["),
         ("grid.mu=1" + "0" * 400, r"^grid\.mu must be finite; got inf$"),
         ("grid.mu=-1" + "0" * 400, r"^grid\.mu must be finite; got -inf$"),

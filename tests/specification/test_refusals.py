@@ -440,6 +440,12 @@ map good.toml --set 'solver.steps=24, cycles = 5'
     solver.steps must be a whole number; got '24, cycles = 5'
 map good.toml --set 'solver.steps=24 }, b = { c = 1'
     solver.steps must be a whole number; got '24 }, b = { c = 1'
+map good.toml --overwrite=yes
+    frictionmap map: argument --overwrite: ignored explicit argument 'yes' (see frictionmap map --help)
+info map.nc -o x.txt
+    unrecognized arguments: -o x.txt (see frictionmap --help)
+response good.toml --beta 0.5 --r=0,5
+    r must be a number; got '0,5'
 plot
     frictionmap plot: the following arguments are required: FILE (see frictionmap plot --help)
 

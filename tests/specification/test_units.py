@@ -177,15 +177,10 @@ def test_text_that_is_no_force(text):
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({}, "units must have at least one of natural_frequency, load, base_amplitude, "),
         ({"load": 12.5}, "such as '12.5 N'; got 12.5: it has no unit"),
         ({"load": True}, "such as '12.5 N'; got True"),
         ({"load": ["1 N"]}, "such as '12.5 N'; got ['1 N']"),
         ({"natural_frequency": "4.2 hz"}, "unknown unit hz (did you mean Hz?)"),
-        ({"natural_frequency": "4.2 1/s"}, "expected one number, one space and one unit"),
-        ({"load": "0 N"}, "load must be > 0; got '0 N'"),
-        ({"load": "-1 N"}, "load must be > 0; got '-1 N'"),
-        ({"load": "model"}, "load must be a number with a unit of force"),
         ({"load": "1 N", "base_amplitude": "1 mm"}, "cannot use base_amplitude with load"),
         (
             {"stiffness": "1 N/m", "mass": "1 kg", "natural_frequency": "1 Hz"},
@@ -201,24 +196,6 @@ def test_units_that_make_no_sense(given, message):
     with pytest.raises(InputError, match=re.escape(message)) as caught:
         fm.Units(**given)
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("units", "system", "message"),
-    [
-        ({"base_amplitude": "1 mm"}, {}, "cannot use units.base_amplitude: it needs base excitation"),
-        ({"natural_frequency": "model"}, {}, "units.natural_frequency must be a number with its unit for a"),
-        ({"stiffness": "model"}, {}, "units.stiffness must be a number with its unit for a chain"),
-        (
-            {"mass": "1 kg", "natural_frequency": "1 Hz"},
-            {"matrices": {"M": [[1.0]], "K": [[1.0]]}},
-            "cannot use units.mass with matrices",
-        ),
-    ],
-)
-def test_units_that_a_system_has_not(units, system, message):
-    with pytest.raises(InputError, match=re.escape(message)):
-        fm.boundaries(fm.System(**system), [1.0], units=fm.Units(**units))
 
 
 @pytest.mark.parametrize(
@@ -360,7 +337,6 @@ def test_a_range_is_rounded_once(start, step, count):
     [
         ("grid.r.step=0.5", "grid.r.step must be a number with a unit of frequency"),
         ("grid.r.start=1", "grid.r.start must be a number with a unit of frequency"),
-        ("grid.r.step=0.5 N", "grid.r.step must be a number with a unit of frequency"),
         ("grid.r.step=0.5 hz", "(did you mean Hz?)"),
         ("grid.r.step=0 Hz", "grid.r.step must be > 0; got '0 Hz'"),
         ("grid.r.stop=0.5 Hz", "grid.r.stop must be >= start (1 Hz); got '0.5 Hz'"),
@@ -368,21 +344,10 @@ def test_a_range_is_rounded_once(start, step, count):
         ("grid.r.num=2.5", "grid.r.num must be a whole number; got 2.5"),
         ("grid.r.num=1", "grid.r.num must be >= 2 to hold both 1 Hz and 600 rpm; got 1"),
         ('grid.r=["1 Hz", 2]', "grid.r[1] must be a number with a unit of frequency"),
-        ('grid.r=["2 Hz", "1 Hz"]', "grid.r must be increasing"),
-        ("grid.r=-1 Hz", "grid.r must be >= 0"),
         ("grid.r=1e300 kHz", "grid.r must be <= 1e+08"),
         ("grid.r.stop=1e308 kHz", "grid.r must be finite"),
-        ("grid.beta=3 Hz", "Hz is a unit of frequency"),
-        ("grid.beta=3,5 N", "use a decimal point, not a comma"),
-        ("grid.mu=1 N", "grid.mu must be a number, a list of numbers or a table; got '1 N'"),
         ('units={ load = "12.5 N" }', "cannot convert grid.r ="),
-        (
-            'units={ natural_frequency = "4.2 Hz" }',
-            "cannot convert grid.beta.values =",
-        ),
-        ("units.load=12,5 N", "units.load must be a number with a unit of force (N, mN, kN, lbf)"),
         ("units.load=12.5", "got 12.5: it has no unit"),
-        ("units.lod=1 N", "unknown key 'units.lod' (did you mean load?)"),
         ("units=3", "units must be a table [units]; got 3"),
         ("units.load=1e308 kN", "units must make beta = 1 mean 1e-100 to 1e+100 N"),
     ],

@@ -23,7 +23,8 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 #: Files that take a minute or so, first: a worker that begins one of them last works on alone.
 LONGEST = (
-    "test_quick_benchmarks.py", "test_contact_stiffness.py", "test_stores.py", "test_explore_goals_page.py",
+    "test_quick_benchmarks.py", "test_unexplained.py", "test_contact_stiffness.py", "test_stores.py",
+    "test_cache.py", "test_compiler.py", "test_explore_goals.py", "test_explore_goals_page.py",
     "test_explore_page.py", "test_fuzz.py", "test_explore_contacts_page.py", "test_explore_alive.py",
     "test_interrupts.py", "test_stores_cut.py",
 )  # fmt: skip

@@ -265,6 +265,7 @@ def test_a_hidden_spring_of_forced_responses_is_found(given):
         ),
         ({"seed": 3, "gain": 1.1}, {}, {"gain": 1.1}, "unequal gains of the channels (gain"),
     ],
+    ids=["late, with errors", "loud, without"],
 )
 def test_late_lags_and_wrong_gains_of_forced_responses_are_found(data, given, found, named):
     ds = forced(table(**data), **given)

@@ -8,6 +8,7 @@ statistics    least squares, outliers, correlated residuals; estimates with thei
 parameters    names of parameters to fit, and of those to hold
 spring        the spring in a contact: fitted as a compliance, reported as a stiffness
 explanations  what explains data that a model does not
+part          a measurement as a part of a joint fit
 signals       records: samples, turning points, harmonics, noise, displacements
 decay         `free_decay`: the free decay of one mass
 response      `forced`, `friction_ratio`: amplitudes and lags of steady states

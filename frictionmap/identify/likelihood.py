@@ -11,9 +11,8 @@ from .chain.estimates import chain_names
 from .chain.fit import Measured
 from .chain.fit import problem as chain_problem
 from .decay.motion import PARAMETERS
-from .decay.problem import DRIFT, Record, half_cycles_of
+from .decay.problem import DRIFT, record_of
 from .decay.problem import problem as decay_problem
-from .decay.wander import polynomials
 from .statistics.least_squares import Problem
 
 
@@ -101,17 +100,12 @@ def _function(
 
 def _decay_likelihood(ds: xr.Dataset) -> LogLikelihood:
     names = (*PARAMETERS, DRIFT)[: ds.sizes["parameter"]]
-    values = ds["estimate"].sel(parameter=list(names)).values.astype(float)
-    held = ds["known"].sel(parameter=list(names)).values == 1
-    known = {name: float(value) for name, value, is_held in zip(names, values, held, strict=True) if is_held}
-    record = Record(ds["time"].values, ds["data"].values, known, names)
-    n = half_cycles_of(ds)
-    sigma = ds["sigma"].values
-    plain = decay_problem(record, n, values)
+    record, n, start = record_of(ds, names)
+    values, sigma = start[: len(names)], ds["sigma"].values
+    plain = decay_problem(record._replace(wander=None), n, values)
 
     # coefficients of a wander have a flat prior: what they can follow is no residual
-    terms = int(ds["wander_terms"]) if "wander_terms" in ds else 0
-    slow = np.linalg.qr(polynomials(record.time, record.names, terms))[0]
+    slow = np.zeros((sigma.size, 0)) if record.wander is None else np.linalg.qr(record.wander)[0]
 
     def residuals(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         found, slopes = plain.residuals(at)

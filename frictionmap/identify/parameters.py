@@ -1,6 +1,7 @@
 """Names of parameters to fit, and of those to hold."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from typing import NamedTuple
 
 from .. import checks
 from ..errors import InputError
@@ -8,10 +9,64 @@ from ..errors import InputError
 #: The stiffness of a spring in the contact, over k1: fitted on request only, by default the contact is rigid.
 CONTACT_STIFFNESS = "contact_stiffness"
 
+#: Compliances between which motions are computed: a stiffer spring counts as rigid, a softer one as none.
+STIFFEST, SOFTEST = 1e-4, 1e3
 
 #: How channels may differ, and what is held unless that is fitted: they are alike.
 ALIKE = {"delay": 0.0, "gain": 1.0}
 CHANNELS = tuple(ALIKE)
+
+
+class Parameter(NamedTuple):
+    """A number that may be known."""
+
+    meaning: str  # in words, with the unit, as a key of [known]
+    example: str
+    unit: str = ""  # of the key; lengths elsewhere are in the unit of the data
+    valid: Mapping[str, float] = {}  # range, as `checks.number` takes it
+
+
+#: What may be known of one mass, or of a structure with friction.
+PARAMETERS = {
+    "f_n": Parameter("natural frequency, Hz", "3.12", "Hz", {"above": 0.0}),
+    "zeta": Parameter(
+        "viscous damping ratio", "0.01", valid={"least": 0.0, "most": checks.LARGEST_DAMPING}
+    ),
+    "beta": Parameter("friction ratio of all sets", "0.2", valid={"least": 0.0}),
+    "mu": Parameter("static over kinetic friction force, >= 1", "1.0", valid={"least": 1.0}),
+    CONTACT_STIFFNESS: Parameter(
+        "stiffness of a spring in the contact over k1; default: rigid", "3.0",
+        valid={"least": 1.0 / SOFTEST, "most": 1.0 / STIFFEST},
+    ),
+    "delay": Parameter(
+        "time by which masses are measured later than the base or load; default: 0, s", "0.002", "s"
+    ),
+    "gain": Parameter(
+        "gain of the channels of masses over that of the base or load; default: 1", "1.02",
+        valid={"above": 0.0},
+    ),
+    "x_F": Parameter("kinetic friction force over stiffness, mm", "0.2", "mm", {"least": 0.0}),
+    "X0": Parameter("amplitude at t0, mm", "9.5", "mm"),
+    "t0": Parameter("time of the first turning point, s", "0.0", "s"),
+    "centre": Parameter("position of the unloaded mass, mm", "0.0", "mm"),
+    "drift": Parameter("drift of the place of the unloaded mass, mm/s", "0.0", "mm/s"),
+    "offset_x": Parameter("position of the unloaded mass for zero base displacement, mm", "0.0", "mm"),
+}  # fmt: skip
+
+
+def unit_of(name: str, length: str) -> str:
+    """Unit of a parameter in a dataset, "1" if it has none, with lengths in the unit of the data."""
+    return PARAMETERS[name].unit.replace("mm", length) or "1"
+
+
+def checked_known(known: Mapping[str, float], valid: Sequence[str]) -> dict[str, float]:
+    """Parameters to be held, if they are known by name and in range; the compliance of a spring."""
+    found = {}
+    for name, value in known.items():
+        checks.choice(name, "known", tuple(valid))
+        number = checks.number(value, f"known.{name}", **PARAMETERS[name].valid)
+        found[name] = 1.0 / number if name == CONTACT_STIFFNESS else number
+    return found
 
 
 def checked_free(

@@ -9,27 +9,12 @@ import math
 import numpy as np
 import xarray as xr
 
-from .. import checks
-from .statistics.estimates import number
+from .parameters import SOFTEST, STIFFEST
+from .statistics.estimates import number, with_error
 from .statistics.least_squares import Errors
-
-#: Compliances between which motions are computed: a stiffer spring counts as rigid, a softer one as none.
-STIFFEST, SOFTEST = 1e-4, 1e3
 
 #: A mass that a spring in the contact holds may lead a base that has a damper, by up to this many degrees.
 LEAD = 20.0
-
-
-def held_compliance(stiffness: object) -> float:
-    """Compliance of a spring whose stiffness over k1 is known.
-
-    Raises
-    ------
-    InputError
-        It is out of range.
-    """
-    most, least = 1.0 / STIFFEST, 1.0 / SOFTEST
-    return 1.0 / checks.number(stiffness, "known.contact_stiffness", least=least, most=most)
 
 
 def with_stiffness(values: np.ndarray, found: Errors, index: int, fitted: bool) -> tuple[np.ndarray, Errors]:
@@ -92,7 +77,4 @@ def spring_in_newtons(
     if math.isnan(error):
         least = number(stiffness * lower, f"lower end of the 95 % interval of the {words}", "N/m")
         return {"spring_stiffness_lower": least}
-    return {
-        "spring_stiffness": number(stiffness * value, words, "N/m"),
-        "spring_stiffness_standard_error": number(stiffness * error, f"standard error of the {words}", "N/m"),
-    }
+    return with_error("spring_stiffness", stiffness * value, stiffness * error, words, "N/m")

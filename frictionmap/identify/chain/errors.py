@@ -6,7 +6,7 @@ import numpy as np
 
 from ..statistics.least_squares import Problem, Solution, minimise
 from ..statistics.levels import ROUNDS, SETTLED
-from ..statistics.robust import root_mean_square, softened, usual_size
+from ..statistics.robust import root_mean_square, soften, usual_size
 from ..statistics.weights import freedom_by_kind
 from .fit import HOPELESS, Found, Measured, fit_chain, no_sum, problem
 
@@ -46,7 +46,7 @@ def fit_robust_by_residuals(data: Measured, known: np.ndarray) -> tuple[Found, P
         if round_ < _SEARCHED:  # the first errors are those of a fit that outliers pull
             found, task = fit_chain(data, known, usual)
         else:
-            best = minimise(softened(task, usual), found.best.values)
+            best = minimise(soften(task, usual), found.best.values)
             found = found._replace(best=best, outliers=usual)
         if settled:
             break

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from ..statistics.estimates import QUANTITIES, estimates
+from ..statistics.estimates import QUANTITIES, estimates, flags
 from ..statistics.least_squares import Errors, Solution, half_widths
 from .fit import Measured
 from .two_masses import frequencies, ratio_slopes
@@ -89,11 +89,7 @@ def _transformed(
 
 
 def _sample_variables(data: Measured) -> dict[str, xr.Variable]:
-    quantity = {
-        "long_name": "what was measured",
-        "flag_values": np.arange(len(QUANTITIES), dtype=np.int8),
-        "flag_meanings": " ".join(QUANTITIES),
-    }
+    quantity = {"long_name": "what was measured", **flags(QUANTITIES)}
     mass = {"long_name": "mass, counted from 1", "units": "1"}
     return {
         "frequency": xr.Variable(

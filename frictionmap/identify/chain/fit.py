@@ -13,7 +13,7 @@ from scipy.optimize import least_squares
 from ...model.modes import wrapped
 from ..signals.turning_points import turns
 from ..statistics.least_squares import Problem, Solution, minimise
-from ..statistics.robust import softened
+from ..statistics.robust import soften
 from .inverse import chain_of
 from .response import modes, response_and_slopes
 from .sides import other_sides
@@ -114,7 +114,7 @@ class Found(NamedTuple):
 def fit_chain(data: Measured, known: np.ndarray, outliers: float | None = None) -> tuple[Found, Problem]:
     """The least sum over searches from many starts, always the same ones; the problem is the plain one."""
     plain = problem(data, known)
-    task = plain if outliers is None else softened(plain, outliers)
+    task = plain if outliers is None else soften(plain, outliers)
     minima: list[Solution] = []
     times, nothing = 0, no_sum(data)
     for start in _starts(data, known):

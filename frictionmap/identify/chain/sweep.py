@@ -11,10 +11,10 @@ from ... import checks
 from ...errors import InputError
 from ..statistics.cautions import autocorrelation_warnings, bound_warnings, correlation_warnings
 from ..statistics.estimates import verdict
-from ..statistics.least_squares import Allowance, Errors, Problem, Solution, errors, undetermined
+from ..statistics.least_squares import Errors, Problem, Solution, undetermined
 from ..statistics.levels import CHANCE
-from ..statistics.robust import LOSSES, effective_variance, jackknife_growth, softened
-from ..statistics.weights import estimated_weights
+from ..statistics.robust import LOSSES, soften
+from ..statistics.weights import table_errors
 from .data import MOST_MASSES, WORDS, Values, check_enough, checked_sweep
 from .errors import fit_by_residuals, fit_robust_by_residuals
 from .estimates import chain_estimates, chain_names
@@ -153,18 +153,16 @@ def _fit(data: Measured, held: np.ndarray, names: tuple[str, ...], given: bool, 
             f"cannot identify {unknown} separately: mass {measured} does not determine them; "
             f"fix {too_many} of them in [known], or measure another mass"
         )
-    if found.outliers is None:
-        kind = data.is_phase.astype(int)
-        allowance = estimated_weights(problem, found.best, kind, np.full(2, not given))
-        of_estimates = errors(problem, found.best, 1.0 if given else None, allowance=allowance)
-        return _Fit(data, found, problem, of_estimates, names, given)
-    variance = effective_variance(problem, found.best, found.outliers)
-    allowance = Allowance(jackknife_growth(problem, found.best, found.outliers))
-    of_estimates = errors(softened(problem, found.outliers), found.best, variance, allowance=allowance)
-    plain = found.best._replace(residual=problem.residuals(found.best.values)[0])
-    freedom = plain.residual.size - int(problem.free.sum())
-    of_estimates = of_estimates._replace(variance=plain.sum / freedom)
-    return _Fit(data, found._replace(best=plain, others=[]), problem, of_estimates, names, given)
+    outliers, best = found.outliers, found.best
+    task = problem if outliers is None else soften(problem, outliers)
+    kind = data.is_phase.astype(int)
+    of_estimates, *_ = table_errors(problem, task, best, kind, np.full(2, given), outliers)
+    if outliers is not None:
+        plain = best._replace(residual=problem.residuals(best.values)[0])
+        freedom = plain.residual.size - int(problem.free.sum())
+        of_estimates = of_estimates._replace(variance=plain.sum / freedom)
+        found = found._replace(best=plain, others=[])
+    return _Fit(data, found, problem, of_estimates, names, given)
 
 
 def _verdict(fit: _Fit) -> xr.Variable:

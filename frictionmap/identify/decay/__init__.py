@@ -12,5 +12,6 @@ wander      a slow wander of the measured zero
 rounding    errors that a coarse converter makes, alike in samples at one place
 errors      errors where noise is correlated, or hides the number of half cycles
 free_decay  `free_decay`: from arrays to estimates
+part        a free decay as a part of a joint fit
 ==========  ========================================================================
 """

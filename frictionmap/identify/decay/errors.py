@@ -9,7 +9,7 @@ import numpy as np
 
 from ..statistics.coloured import Coloured, coloured_growth, coloured_noise
 from ..statistics.correlation import long_inflation
-from ..statistics.least_squares import Allowance, Errors, Noise, Solution, errors, one_sided
+from ..statistics.least_squares import Errors, ErrorScaling, Noise, Solution, errors, one_sided
 from .fit import DecayFit, freedom_of, sample_variance
 from .problem import Record
 from .rounding import rounding_growth
@@ -50,8 +50,8 @@ def _fit_errors(record: Record, fit: DecayFit, coloured: Coloured | None) -> Err
         gains = np.linalg.pinv(solution.slopes[:, free])
         larger[free] = rounding_growth(record.x, record.x + residual, noise.variance, record.weights, gains)
     # samples that are correlated in time count as fewer; the errors of rounding are known
-    allowance = Allowance(by_time * larger, np.maximum(freedom / by_time**2, 1.0))
-    found = errors(fit.problem, solution, noise=noise, allowance=allowance)
+    scaling = ErrorScaling(by_time * larger, np.maximum(freedom / by_time**2, 1.0))
+    found = errors(fit.problem, solution, noise=noise, scaling=scaling)
     named = slice(len(record.names))
     widths = np.array([one_sided(float(one)) for one in found.freedom])
     reach = np.where(solution.at_bound, (found.upper - found.lower) / widths, 0.0)
@@ -63,7 +63,7 @@ def _fit_errors(record: Record, fit: DecayFit, coloured: Coloured | None) -> Err
         freedom=found.freedom[named],
         correlation=found.correlation[named, named],
         variance=float(residual @ residual) / (residual.size - int(record.free.sum())),
-        inflation=float(allowance.larger[named].max()),
+        inflation=float(scaling.larger[named].max()),
     )
 
 

@@ -8,6 +8,7 @@ import xarray as xr
 from ... import checks
 from ...errors import InputError
 from ...units.table import checked_unit, conversion
+from ..parameters import checked_known, unit_of
 from ..signals.plateaus import unclipped
 from ..signals.samples import checked_record, largest_gap, within
 from ..signals.turning_points import (
@@ -18,7 +19,7 @@ from ..signals.turning_points import (
     without_spikes,
 )
 from ..statistics.cautions import autocorrelation_warnings, bound_warnings, correlation_warnings
-from ..statistics.estimates import estimates, number, verdict
+from ..statistics.estimates import estimates, number, verdict, with_error
 from ..statistics.least_squares import Errors
 from ..statistics.levels import FOUND
 from ..statistics.robust import LOSSES
@@ -123,7 +124,7 @@ def free_decay(
         raise InputError(f"drift must be true or false; got {checks.one_line(drift)}")
     checks.choice(loss, "loss", LOSSES)
     names = (*PARAMETERS, DRIFT) if drift else PARAMETERS
-    held = checked_known(known or {}, names)
+    held = _held(known or {}, names)
     times, places = checked_record(time, x)
     inside = within(window, times)
     times, places = times[inside], places[inside]
@@ -139,7 +140,7 @@ def free_decay(
     found, solution = decay_errors(searched), decay_solution(record, fit)
     losses = _losses(record, points, fit)
     meanings = {name: _MEANINGS[name] for name in names}
-    units = (*_units(unit), f"{unit}/s")[: len(names)]
+    units = [unit_of(name, unit) for name in names]
     ds = estimates(meanings, units, solution, found, record.free[: len(names)], data, unit)
     ds["time"] = xr.Variable("sample", t, {"long_name": "time", "units": "s"})
     ds["verdict"] = verdict(_verdict(fit, found, losses), _VERDICTS)
@@ -169,26 +170,14 @@ def _searched(record: Record, points: TurningPoints) -> Search:
     return found if weights is None else search(record._replace(weights=weights), points)
 
 
-def checked_known(known: Mapping[str, float], names: tuple[str, ...] = PARAMETERS) -> dict[str, float]:
-    """Parameters to be held, if they are known by name and in range."""
-    ranges: dict[str, dict[str, float]] = {
-        "f_n": {"above": 0.0},
-        "zeta": {"least": 0.0},
-        "x_F": {"least": 0.0},
-    }
-    result = {}
-    for name, value in known.items():
-        checks.choice(name, "known", names)
-        result[name] = checks.number(value, f"known.{name}", **ranges.get(name, {}))
+def _held(known: Mapping[str, float], names: tuple[str, ...]) -> dict[str, float]:
+    """Parameters to be held, if they are known by name and in range, one at least free."""
+    result = checked_known(known, names)
     if result.get("zeta", 0.0) >= 1.0:
         raise InputError(f"known.zeta must be < 1 for a decay with turning points; got {known['zeta']}")
     if len(result) == len(names):
         raise InputError(f"known must leave at least one parameter free; got all of {', '.join(names)}")
     return result
-
-
-def _units(unit: str) -> tuple[str, ...]:
-    return ("Hz", "1", unit, unit, "s", unit)
 
 
 def _losses(record: Record, points: TurningPoints, fit: DecayFit) -> dict[str, float]:
@@ -268,11 +257,10 @@ def _scaled(
     if stiffness is not None:
         newtons = checks.number(stiffness, "stiffness", above=0.0) * conversion(unit, "m")
         scales.append(("friction_force", "kinetic friction force k x_F", "N", newtons))
-    result = {}
+    x_F, error = fit.decay.x_F, float(found.standard_error[X_F])  # noqa: N806
+    result: dict[str, xr.Variable] = {}
     for name, words, units, scale in scales:
-        result[name] = number(scale * fit.decay.x_F, words, units)
-        error = scale * float(found.standard_error[X_F])
-        result[f"{name}_standard_error"] = number(error, f"standard error of {name}", units)
+        result |= with_error(name, scale * x_F, scale * error, words, units, f"standard error of {name}")
     return result
 
 

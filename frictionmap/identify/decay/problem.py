@@ -1,13 +1,14 @@
 """Least squares of a measured record on the exact decay, perhaps with a drifting or wandering zero."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from numpy.polynomial import legendre
 
 from ..statistics.least_squares import Problem
-from ..statistics.robust import softened
+from ..statistics.robust import soften
 from .motion import PARAMETERS, Decay, displacement_and_slopes
 
 #: The measured place of the centre may change by so much a second.
@@ -75,9 +76,26 @@ class Record(NamedTuple):
         return np.concatenate((np.isin(self.names, _LINEAR), np.ones(self.terms, dtype=bool)))
 
 
-def half_cycles_of(ds: xr.Dataset) -> int:
-    """Half cycles before rest of a decay that was fitted; more than its record has if that shows no rest."""
-    return int(ds["half_cycles"]) + (0 if int(ds["at_rest"]) else _NO_REST)
+def record_of(ds: xr.Dataset, names: tuple[str, ...]) -> tuple[Record, int, np.ndarray]:
+    """The record of a decay that was fitted, the turning point with which it ends, and all unknowns.
+
+    A record that does not show the place of rest ends with a turning point beyond it.
+    """
+    named = ds.sel(parameter=list(names))
+    values, held = named["estimate"].values.astype(float), named["known"].values == 1
+    known = {name: float(value) for name, value, is_held in zip(names, values, held, strict=True) if is_held}
+    terms = int(ds["wander_terms"]) if "wander_terms" in ds else 0
+    wander = polynomials(ds["time"].values, names, terms) if terms else None
+    record = Record(ds["time"].values, ds["data"].values, known, names, wander=wander)
+    n = int(ds["half_cycles"]) + (0 if int(ds["at_rest"]) else _NO_REST)
+    return record, n, np.concatenate((values, np.zeros(terms)))
+
+
+def polynomials(time: np.ndarray, names: Sequence[str], terms: int) -> np.ndarray:
+    """Legendre polynomials over a record, shape (samples, terms), above the degree of the named unknowns."""
+    lowest = 2 if DRIFT in names else 1
+    scaled = 2.0 * (time - time[0]) / np.ptp(time) - 1.0
+    return legendre.legvander(scaled, lowest + terms - 1)[:, lowest:]
 
 
 def model(record: Record, n: int, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -95,7 +113,7 @@ def model(record: Record, n: int, values: np.ndarray) -> tuple[np.ndarray, np.nd
 def problem(record: Record, n: int, start: np.ndarray) -> Problem:
     """Least squares of all samples on a decay that ends at turning point `n`; outliers have little weight."""
     full = weighted_problem(record, n, start)
-    return full if record.outliers is None else softened(full, record.outliers)
+    return full if record.outliers is None else soften(full, record.outliers)
 
 
 def weighted_problem(record: Record, n: int, start: np.ndarray) -> Problem:

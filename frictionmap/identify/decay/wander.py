@@ -5,17 +5,15 @@ place of rest, and with it x_F, by many standard errors.  Legendre polynomials u
 cycles in a record, roughly.
 """
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
 from scipy.special import chdtrc
 
 from ..signals.turning_points import TurningPoints
 from ..statistics.correlation import long_inflation
 from .fit import DecayFit, fit_decay, refit, rounding_variance
-from .problem import DRIFT, Record, problem
+from .problem import Record, polynomials, problem
 
 #: Terms for each cycle of the decay: they follow what is slower than a quarter of its frequency.
 _TERMS_PER_CYCLE = np.pi / 4.0
@@ -93,10 +91,3 @@ def _most_terms(record: Record, fit: DecayFit) -> int:
     cycles = float(np.ptp(record.time)) * fit.decay.f_n
     most = min(_MOST_TERMS, record.time.size // _SAMPLES_PER_TERM)
     return int(np.clip(np.ceil(_TERMS_PER_CYCLE * cycles), min(_FEWEST_TERMS, most), most))
-
-
-def polynomials(time: np.ndarray, names: Sequence[str], terms: int) -> np.ndarray:
-    """Legendre polynomials over a record, shape (samples, terms), above the degree of the named unknowns."""
-    lowest = 2 if DRIFT in names else 1
-    scaled = 2.0 * (time - time[0]) / np.ptp(time) - 1.0
-    return legendre.legvander(scaled, lowest + terms - 1)[:, lowest:]

@@ -3,7 +3,6 @@
 ======  ===============================================================
 module  what is in it
 ======  ===============================================================
-parts   each decay and record as a part, with parameters that all share
 fit     the fit of all parts
 joint   `joint`: from several measurements to estimates
 ======  ===============================================================

@@ -5,11 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..part import SHARED, Part
 from ..statistics.least_squares import Noise, Problem, Solution, minimise
-from ..time_series.motion import PARAMETERS as OF_RECORD
-from ..time_series.motion import motion, outer
 from ..time_series.static_friction import FITTED, IDLE, KNOWN, ONE, is_asked_for
-from .parts import SHARED, Part, measured_again, with_shared
 
 F_N, ZETA, MU = range(len(SHARED))
 
@@ -27,9 +25,10 @@ class JointFit(NamedTuple):
     noise: Noise
     static: int  # KNOWN, ONE, FITTED or IDLE
 
-    def of_part(self, k: int) -> np.ndarray:
-        """The values of part k, in its own order."""
-        return self.solution.values[places_of(self.parts)[k]]
+    def each(self, solution: Solution | None = None) -> list[tuple[Part, np.ndarray]]:
+        """The parts with their values in a solution, that of the fit by default, in their own order."""
+        values = (solution or self.solution).values
+        return [(part, values[at]) for part, at in _each(self.parts)]
 
     @property
     def model_error(self) -> float:
@@ -43,7 +42,7 @@ def fit_jointly(parts: list[Part], known: Mapping[str, float]) -> JointFit:
     begun = [_minimised(one, held) for one in _begun(parts, known)]
     parts, solution = min(begun, key=lambda found: _comparable(*found))
     for _ in range(_ROUNDS):
-        parts = [measured_again(part, solution.values[at]) for part, at in _each(parts)]
+        parts = [part.measured_again(solution.values[at]) for part, at in _each(parts)]
         solution = minimise(_problem(parts, held), solution.values)
     fit = _fit(parts, held, known, solution, KNOWN)
     return fit if "mu" in known else _with_static(fit, known)
@@ -67,12 +66,11 @@ def _each(parts: list[Part]) -> list[tuple[Part, np.ndarray]]:
 
 
 def _begun(parts: list[Part], known: Mapping[str, float]) -> list[list[Part]]:
-    """Parts with starts from the decays, or, if there is none, from each record."""
-    decays = [part for part in parts if part.record is None]
+    """Parts with starts from those that lead, or, if there is none, from each."""
     begun = []
-    for source in decays or parts:
+    for source in [part for part in parts if part.leads] or parts:
         shared = {name: float(source.start[source.names.index(name)]) for name in ("f_n", "zeta")}
-        begun.append([part if part is source else with_shared(part, shared, known) for part in parts])
+        begun.append([part if part is source else part.with_shared(shared, known) for part in parts])
     return begun
 
 
@@ -82,9 +80,9 @@ def _start(parts: list[Part], known: Mapping[str, float]) -> np.ndarray:
     values = np.zeros(size)
     for part, at in _each(parts):
         values[at] = part.start
-    decays = [(part, at) for part, at in _each(parts) if part.record is None]
-    for part, at in decays:
-        values[at[:2]] = part.start[:2]
+    for part, at in _each(parts):
+        if part.leads:
+            values[at[:2]] = part.start[:2]
     for name in ("f_n", "zeta"):
         if name in known:
             values[SHARED.index(name)] = known[name]
@@ -144,7 +142,7 @@ def _with_static(fit: JointFit, known: Mapping[str, float]) -> JointFit:
     if stops(fit, solution) and is_asked_for(
         fit.solution.sum - solution.sum, fit.with_mu, solution, fit.noise, MU
     ):
-        parts = [measured_again(part, solution.values[at]) for part, at in _each(fit.parts)]
+        parts = [part.measured_again(solution.values[at]) for part, at in _each(fit.parts)]
         solution = minimise(_problem(parts, known), solution.values)
         return _fit(parts, known, known, solution, FITTED)
     on_bound = fit.solution.at_bound.copy()
@@ -155,9 +153,5 @@ def _with_static(fit: JointFit, known: Mapping[str, float]) -> JointFit:
 
 
 def stops(fit: JointFit, solution: Solution) -> bool:
-    """Whether the mass sticks in one of the records."""
-    return any(
-        motion(part.fit.mass, outer(solution.values[at][: len(OF_RECORD)])).stops > 0
-        for part, at in _each(fit.parts)
-        if part.fit is not None
-    )
+    """Whether the mass sticks in one of the parts."""
+    return any((part.stops(values) or 0) > 0 for part, values in fit.each(solution))

@@ -8,21 +8,22 @@ import xarray as xr
 
 from ... import checks
 from ...datasets.provenance import system_text
-from ...errors import InputError
+from ...errors import InputError, naming
 from ...model.system import DAMPING_REFERENCES
-from ...units.table import checked_unit, conversion
-from ..parameters import ALIKE
+from ...units.table import checked_unit
+from ..decay.part import decay_part
+from ..parameters import ALIKE, checked_known, unit_of
+from ..part import SHARED, Part
 from ..statistics.cautions import interval_warnings
-from ..statistics.estimates import estimates, number, usable_errors, verdict
-from ..statistics.least_squares import Errors, Solution, errors, growth, two_sided
+from ..statistics.estimates import estimates, friction_force, number, usable_errors, verdict
+from ..statistics.least_squares import Errors, Solution, errors, growth
 from ..statistics.robust import LOSSES
-from ..time_series.labels import of_data, of_record, one_mass
-from ..time_series.motion import CONTACTS, motion, outer
-from ..time_series.motion import PARAMETERS as OF_RECORD
-from ..time_series.static_friction import FITTED, IDLE, ONE, highest, interval, per_square
+from ..time_series.labels import one_mass
+from ..time_series.motion import CONTACTS
+from ..time_series.part import record_part
+from ..time_series.static_friction import FITTED, IDLE, ONE, mu_interval, per_square
 from ..time_series.verdict import friction_found, limit_of_correlation, listed
 from .fit import F_N, MU, ZETA, JointFit, fit_jointly, places_of
-from .parts import SHARED, Part, decay_part, record_part, whole_of
 
 _MEANINGS = {
     "f_n": "natural frequency without friction and damping, of all data",
@@ -37,13 +38,6 @@ _MEANINGS = {
 
 #: What may be held; x_F is then that of all data.
 KNOWN = ("f_n", "zeta", "mu", "x_F")
-
-_RANGES: dict[str, dict[str, float]] = {
-    "f_n": {"above": 0.0},
-    "zeta": {"least": 0.0, "most": checks.LARGEST_DAMPING},
-    "mu": {"least": 1.0},
-    "x_F": {"least": 0.0},
-}
 
 _REMEDY = "add a free decay, hold f_n and zeta, or hold mu = 1"
 
@@ -109,7 +103,7 @@ def joint(
     checks.choice(contact, "contact", CONTACTS)
     checks.choice(damping_reference, "damping_reference", DAMPING_REFERENCES)
     checks.choice(loss, "loss", LOSSES)
-    held = _checked_known(known or {})
+    held = checked_known(known or {}, KNOWN)
     names = _checked_labels(data, labels)
     parts = [
         _part(label, arrays, unit, contact, damping_reference, held, loss)
@@ -117,19 +111,12 @@ def joint(
     ]
     fit = fit_jointly(parts, held)
     found = _errors(fit)
-    ds = _dataset(fit, found, unit).assign(_part_variables(fit, found, unit, stiffness, loss))
+    ds = _dataset(fit, found, unit).assign(_part_variables(fit, found, unit, stiffness))
+    about_data = [f"{part.label}: {one}" for part in fit.parts for one in part.data_warnings(unit)]
     ds.attrs["title"] = "Several measurements"
     ds.attrs["config"] = system_text(one_mass(contact, damping_reference))
-    ds.attrs["warnings"] = "; ".join([*_data_warnings(fit, unit, loss), *_fit_warnings(fit, found)])
+    ds.attrs["warnings"] = "; ".join(about_data + _fit_warnings(fit, found))
     return ds
-
-
-def _checked_known(known: Mapping[str, float]) -> dict[str, float]:
-    result = {}
-    for name, value in known.items():
-        checks.choice(name, "known", KNOWN)
-        result[name] = checks.number(value, f"known.{name}", **_RANGES[name])
-    return result
 
 
 def _checked_labels(data: object, labels: Sequence[object] | None) -> list[str]:
@@ -154,12 +141,10 @@ def _part(
             f"data {label} must be (time, x) of a decay or (time, base, x) of a record; "
             f"got {checks.one_line(arrays)}"
         )
-    try:
+    with naming(f"data {label}"):
         if len(arrays) == 2:
             return decay_part(label, arrays[0], arrays[1], unit, known, loss)
-        return record_part(label, arrays, contact, reference, known, loss)
-    except InputError as error:
-        raise InputError(f"data {label}: {error}") from None
+        return record_part(label, arrays, (contact, reference), known, loss)
 
 
 def _names(fit: JointFit) -> list[str]:
@@ -185,18 +170,11 @@ def _errors(fit: JointFit) -> Errors:
     on_bound = fit.solution.at_bound & fit.problem.free
     found = errors(fit.problem, fit.solution._replace(at_bound=on_bound), noise=fit.noise)
     lower, upper, error = found.lower.copy(), found.upper.copy(), found.standard_error.copy()
-    square, of_square = float(fit.solution.values[MU]), float(error[MU])
-    if fit.static == ONE:
-        most, moved = highest(fit.with_mu, fit.solution, fit.noise, MU)
-        lower, upper = lower + np.minimum(moved, 0.0), upper + np.maximum(moved, 0.0)
-        lower[MU], upper[MU] = 1.0, 1.0 + float(np.sqrt(most))
-    elif fit.static == IDLE:
-        lower[MU], upper[MU] = 1.0, np.inf
-    elif fit.static == FITTED:
-        lower[MU], upper[MU] = interval(square, two_sided(fit.noise.freedom) * of_square)
-        error[MU] = of_square * per_square(1.0 + float(np.sqrt(square)), of_square)
-    else:
-        lower[MU] = upper[MU] = 1.0 + float(np.sqrt(square))
+    of_square = float(error[MU])
+    lower[MU], upper[MU], moved = mu_interval(fit.static, fit.with_mu, fit.solution, fit.noise, MU, of_square)
+    lower, upper = lower + np.minimum(moved, 0.0), upper + np.maximum(moved, 0.0)
+    if fit.static == FITTED:
+        error[MU] = of_square * per_square(1.0 + float(np.sqrt(fit.solution.values[MU])), of_square)
     lower = np.where(fit.with_mu.free, np.maximum(lower, fit.with_mu.floor), lower)
     grown = float(growth(fit.problem, fit.solution, fit.noise).max())
     return found._replace(standard_error=error, lower=lower, upper=upper, inflation=grown)
@@ -208,7 +186,6 @@ def _dataset(fit: JointFit, found: Errors, unit: str) -> xr.Dataset:
     kinds = [
         next(kind for kind in _MEANINGS if name == kind or name.startswith(f"{kind}_")) for name in shown
     ]
-    units = {"f_n": "Hz", "zeta": "1", "mu": "1", "t0": "s"}
     meanings = {
         name: _MEANINGS[kind] if name == kind else f"{_MEANINGS[kind]}, {name.removeprefix(kind + '_')}"
         for name, kind in zip(shown, kinds, strict=True)
@@ -216,7 +193,7 @@ def _dataset(fit: JointFit, found: Errors, unit: str) -> xr.Dataset:
     values = fit.solution.values.copy()
     values[MU] = 1.0 + np.sqrt(max(values[MU], 0.0))
     data = np.concatenate([part.data for part in fit.parts])
-    residual = np.concatenate([_residual(fit, k) for k in range(len(fit.parts))])
+    residual = np.concatenate([part.residual(values) for part, values in fit.each()])
     error = usable_errors(found, MU, 1.0, bool(fit.with_mu.free[MU]))
     chosen = found._replace(
         standard_error=error[order], lower=found.lower[order], upper=found.upper[order],
@@ -225,7 +202,7 @@ def _dataset(fit: JointFit, found: Errors, unit: str) -> xr.Dataset:
     solution = Solution(values[order], residual, np.zeros((0, 0)), fit.solution.at_bound[order])
     sigma = np.concatenate([np.full(part.data.size, part.sigma) for part in fit.parts])
     ds = estimates(
-        meanings, [units.get(kind, unit) for kind in kinds], solution, chosen, fit.with_mu.free[order], data,
+        meanings, [unit_of(kind, unit) for kind in kinds], solution, chosen, fit.with_mu.free[order], data,
         unit, sigma,
     )  # fmt: skip
     ds["sigma"].attrs["long_name"] = "standard deviation of the noise by which a sample counts"
@@ -240,46 +217,19 @@ def _dataset(fit: JointFit, found: Errors, unit: str) -> xr.Dataset:
     return ds
 
 
-def _residual(fit: JointFit, k: int) -> np.ndarray:
-    """Fitted less measured of part k, in the unit of the data."""
-    part, values = fit.parts[k], fit.of_part(k)
-    if part.fit is None:
-        assert part.plain is not None
-        return part.plain(values)
-    fitted = motion(part.fit.mass, outer(values[: len(OF_RECORD)])).places
-    return fitted + part.fit.samples.slow @ values[len(OF_RECORD) :] - part.data
-
-
 def _part_variables(
-    fit: JointFit, found: Errors, unit: str, stiffness: float | None, loss: str
+    fit: JointFit, found: Errors, unit: str, stiffness: float | None
 ) -> dict[str, xr.Variable]:
     """Further results of each part."""
     result: dict[str, xr.Variable] = {}
-    for k, part in enumerate(fit.parts):
-        values, friction = fit.of_part(k), int(places_of(fit.parts)[k][part.names.index("x_F")])
-        x_F, error = float(fit.solution.values[friction]), float(found.standard_error[friction])  # noqa: N806
-        rms = float(np.sqrt(np.mean(_residual(fit, k) ** 2)))
-        result[f"residual_rms_{part.label}"] = number(
-            rms, f"root mean square of residuals, {part.label}", unit
-        )
+    for (part, values), at in zip(fit.each(), places_of(fit.parts), strict=True):
+        label, place = part.label, part.names.index("x_F")
+        rms = float(np.sqrt(np.mean(part.residual(values) ** 2)))
+        result[f"residual_rms_{label}"] = number(rms, f"root mean square of residuals, {label}", unit)
         if stiffness is not None:
-            newtons = checks.number(stiffness, "stiffness", above=0.0) * conversion(unit, "m")
-            words = f"kinetic friction force k x_F, {part.label}"
-            result[f"friction_force_{part.label}"] = number(newtons * x_F, words, "N")
-            result[f"friction_force_{part.label}_standard_error"] = number(
-                newtons * error, f"standard error of the {words}", "N"
-            )
-        if part.fit is not None:
-            phasors = whole_of(part, loss).phasors
-            base = float(abs(phasors.values[0, 1]))
-            moves = motion(part.fit.mass, outer(values[: len(OF_RECORD)]))
-            result |= {
-                f"beta_{part.label}": number(x_F / base, f"friction ratio, {part.label}"),
-                f"stops_per_cycle_{part.label}": number(moves.stops, f"stops per cycle, {part.label}"),
-                f"base_frequency_{part.label}": number(
-                    phasors.frequency, f"frequency of the base, {part.label}", "Hz"
-                ),
-            }
+            error = float(found.standard_error[at[place]])
+            result |= friction_force(float(values[place]), error, stiffness, unit, label)
+        result |= {f"{name}_{label}": one for name, one in part.variables(values).items()}
     return result
 
 
@@ -302,8 +252,9 @@ def _verdict(fit: JointFit, found: Errors, names: list[str]) -> tuple[int, dict[
 
 def _inseparable(fit: JointFit, found: Errors, names: list[str]) -> list[str]:
     """Shared parameters and frictions of records that are not identifiable separately."""
-    of_records = {f"x_F_{part.label}" for part in fit.parts if part.fit is not None}
-    frictions = [k for k, name in enumerate(names) if name in of_records]
+    frictions = [
+        names.index(f"x_F_{part.label}") for part, values in fit.each() if part.stops(values) is not None
+    ]
     vague = [
         k
         for k in frictions
@@ -318,20 +269,6 @@ def _inseparable(fit: JointFit, found: Errors, names: list[str]) -> list[str]:
         pair for pair in combinations((F_N, ZETA, MU, *vague), 2) if abs(found.correlation[pair]) > limit
     ]
     return [names[k] for k in (F_N, ZETA, MU, *vague) if any(k in pair for pair in pairs)]
-
-
-def _data_warnings(fit: JointFit, unit: str, loss: str) -> list[str]:
-    """Warnings about each part."""
-    words = []
-    for part in fit.parts:
-        if part.decay is not None:
-            own = str(part.decay.attrs["warnings"]).split("; ")
-            found = [one for one in own if one.startswith(("clipped", "a gap", "the residuals have"))]
-        else:
-            given = whole_of(part, loss)
-            found = of_data(given, xr.Dataset(of_record(given, unit)))
-        words += [f"{part.label}: {one}" for one in found]
-    return words
 
 
 def _fit_warnings(fit: JointFit, found: Errors) -> list[str]:

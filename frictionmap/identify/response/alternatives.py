@@ -29,7 +29,7 @@ from .fit import (
     with_errors,
 )
 from .labels import UNITS
-from .model import DELAY, F_N, GAIN, LAW, ZETA, corrected, nearest, points_of
+from .model import DELAY, F_N, GAIN, LAW, PLACES, ZETA, corrected, nearest, points_of
 
 #: Lags [rad] and logarithms of amplitudes of data without errors are exact to this: no fit is judged by less.
 _EXACT = 1e-6
@@ -119,14 +119,13 @@ def _cause(one: Tried, table: ForcedTable) -> Cause:
 
 def _others(task: Task, doubtful: Collection[str]) -> Iterator[Tried]:
     """Fits with one parameter more: one that was held, or a spring."""
-    names = {"f_n": F_N, "zeta": ZETA, "mu": LAW, CONTACT_STIFFNESS: LAW, "delay": DELAY, "gain": GAIN}
     phases, samples = task.table.samples.is_phase, task.table.samples.row.size
     seen = {"delay": phases.any(), "gain": not phases.all()}
     tasks = []
     for name in doubtful:
-        if seen.get(name, name in names):
+        if seen.get(name, name in PLACES):
             known = task.known.copy()
-            known[names[name]] = np.nan
+            known[PLACES[name]] = np.nan
             tasks.append((name, task._replace(known=known)))
     if not task.elastic and not task.known[LAW] > 1.0:
         known = task.known.copy()

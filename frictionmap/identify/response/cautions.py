@@ -24,12 +24,12 @@ def fit_warnings(table: ForcedTable, fit: TableFit) -> list[str]:
     names = parameter_names(table, fit.model.elastic)
     at_bound = fit.solution.at_bound.copy()
     if fit.model.elastic:
-        at_bound[LAW] = False  # `_of_contact` has words for it
+        at_bound[LAW] = False  # `_contact_warnings` has words for it
     return [
         *_scatter(table, fit),
         *autocorrelation_warnings(fit.errors),
         *correlation_warnings(names, shown_estimates(fit)[1].correlation),
-        *_of_contact(fit),
+        *_contact_warnings(fit),
         *bound_warnings(names, fit.problem.floor, at_bound),
         *_near_sticking(fit),
         *_several(fit),
@@ -37,7 +37,7 @@ def fit_warnings(table: ForcedTable, fit: TableFit) -> list[str]:
     ]
 
 
-def _of_contact(fit: TableFit) -> list[str]:
+def _contact_warnings(fit: TableFit) -> list[str]:
     """Warnings about mu, or about the spring."""
     if not fit.problem.free[LAW]:
         return []

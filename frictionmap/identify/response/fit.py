@@ -8,14 +8,13 @@ from scipy.special import gammainccinv
 from ... import checks, regimes
 from ...errors import InputError
 from ...model.system import System
-from ..parameters import CHANNELS, CONTACT_STIFFNESS
-from ..spring import SOFTEST, with_stiffness
+from ..parameters import CHANNELS, CONTACT_STIFFNESS, SOFTEST
+from ..spring import with_stiffness
 from ..statistics.least_squares import (
-    Allowance,
     Errors,
     Problem,
     Solution,
-    errors,
+    continued_below,
     minimise,
     one_sided,
     profile_end,
@@ -23,8 +22,8 @@ from ..statistics.least_squares import (
     undetermined,
 )
 from ..statistics.levels import ROUNDS, SETTLED
-from ..statistics.robust import effective_variance, jackknife_growth, root_mean_square, softened, usual_size
-from ..statistics.weights import estimated_weights, freedom_by_kind
+from ..statistics.robust import root_mean_square, soften, usual_size
+from ..statistics.weights import freedom_by_kind, table_errors
 from .data import ForcedTable
 from .model import DELAY, F_N, GAIN, LAW, ZETA, Fitted, ForcedModel, Samples, evaluate
 from .start import closer, starts
@@ -97,7 +96,7 @@ def nearest_states(
     rigid = elastic and bool(task.free[LAW] and solution.at_bound[LAW])
     if idle or rigid:
         free = task.free
-        held = _with_law(known, 0.0 if rigid else 1.0)
+        held = _hold_contact_parameter(known, 0.0 if rigid else 1.0)
         model, solution, task = _weighted(model, held, table.given, robust, thorough)
         here = evaluate(model, solution.values, task.free)
         if rigid:  # whatever is left of the spring is within the interval
@@ -115,20 +114,14 @@ def with_errors(table: ForcedTable, near: Nearest, robust: bool) -> TableFit:
     """
     model, task, solution = near.model, near.problem, near.solution
     flat = near.rigid or _is_flat(model, solution, task)
-    determined = _without_law(task) if flat else task
+    determined = _hold_law(task) if flat else task
     _check_identifiable(table, model, solution, determined)
     plain = problem(model, determined.free if near.rigid else task.free, float(solution.values[F_N]))
     now = solution._replace(at_bound=solution.at_bound & determined.free)
-    variance = 1.0 if any(table.given) else None
-    if robust:
-        variance = effective_variance(plain, solution, OUTLIER)
-        allowance = Allowance(jackknife_growth(plain._replace(free=determined.free), solution, OUTLIER))
-    else:
-        allowance = estimated_weights(determined, now, _kind(model.samples), ~np.array(table.given))
-    found = errors(determined, now, variance, allowance=allowance)
-    of_law = (found.variance if variance is None else variance) * (
-        found.inflation * allowance.larger[LAW]
-    ) ** 2
+    found, scaling, variance = table_errors(
+        plain, determined, now, _kind(model.samples), np.array(table.given), OUTLIER if robust else None
+    )
+    of_law = (found.variance if variance is None else variance) * (found.inflation * scaling.larger[LAW]) ** 2
     found = (_on_bound if flat else _near_bound)(found, task, solution, of_law)
     if flat:
         solution = solution._replace(at_bound=solution.at_bound | (task.free & ~determined.free))
@@ -155,14 +148,14 @@ def _effects(model: ForcedModel, solution: Solution) -> np.ndarray:
     return np.linalg.norm(solution.slopes * model.samples.sigma[:, np.newaxis], axis=0) * unit
 
 
-def _with_law(known: np.ndarray, value: float) -> np.ndarray:
+def _hold_contact_parameter(known: np.ndarray, value: float) -> np.ndarray:
     """What is held, and the parameter of the contact with it."""
     held = known.copy()
     held[LAW] = value
     return held
 
 
-def _without_law(task: Problem) -> Problem:
+def _hold_law(task: Problem) -> Problem:
     """Hold mu, or the spring."""
     free = task.free.copy()
     free[LAW] = False
@@ -202,19 +195,15 @@ def _near_bound(found: Errors, task: Problem, solution: Solution, variance: floa
 
 
 def problem(model: ForcedModel, free: np.ndarray, f_n: float, robust: bool = False) -> Problem:
-    """Least squares of all samples; `f_n` is where the fit begins.
-
-    Below a bound, where there is no model, its tangent there takes its place.
-    """
+    """Least squares of all samples; `f_n` is where the fit begins."""
     floor = np.full(free.size, -np.inf)
     floor[:F_N], floor[ZETA] = 0.0, 0.0
     if free[LAW]:
         floor[LAW] = model.least_law
 
     def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        inside = np.maximum(values, floor)
-        found = evaluate(model, inside, free)
-        return found.residual + found.slopes @ (values - inside), found.slopes
+        found = evaluate(model, values, free)
+        return found.residual, found.slopes
 
     lowest, highest = np.full(free.size, -np.inf), np.full(free.size, np.inf)
     lowest[F_N], highest[F_N] = f_n * (1.0 - _FREQUENCY_RANGE), f_n * (1.0 + _FREQUENCY_RANGE)
@@ -223,8 +212,8 @@ def problem(model: ForcedModel, free: np.ndarray, f_n: float, robust: bool = Fal
     highest[ZETA] = checks.LARGEST_DAMPING
     if model.elastic:
         highest[LAW] = SOFTEST
-    plain = Problem(residuals, free, floor, lowest, highest)
-    return softened(plain, OUTLIER) if robust else plain
+    plain = continued_below(Problem(residuals, free, floor, lowest, highest))
+    return soften(plain, OUTLIER) if robust else plain
 
 
 def _weighted(

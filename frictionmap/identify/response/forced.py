@@ -12,8 +12,15 @@ from ...errors import InputError
 from ...model.general import refuse_general
 from ...model.system import System
 from ..explanations import Cause, Outcome, added, doubts
-from ..parameters import ALIKE, CHANNELS, CONTACT_STIFFNESS, checked_free, is_elastic, refuse_mu
-from ..spring import held_compliance
+from ..parameters import (
+    ALIKE,
+    CHANNELS,
+    CONTACT_STIFFNESS,
+    checked_free,
+    checked_known,
+    is_elastic,
+    refuse_mu,
+)
 from ..statistics.estimates import verdict
 from ..statistics.levels import FOUND
 from ..statistics.robust import LOSSES
@@ -22,7 +29,7 @@ from .cautions import fit_warnings
 from .data import ForcedTable, Values, checked_table
 from .labels import friction_forces, labelled, spring_stiffness
 from .lags import friction_ratios, impossible, refuse_impossible, without
-from .model import DELAY, F_N, GAIN, LAW, ZETA
+from .model import DELAY, F_N, PLACES, ZETA
 
 #: What can be fitted or held; beta is that of every set.
 PARAMETERS = ("beta", "f_n", "zeta", "mu", CONTACT_STIFFNESS, *CHANNELS)
@@ -202,23 +209,11 @@ def _checked_known(
     """Parameters that are held, NaN of the others."""
     held = np.full(sets + 5, np.nan)
     held[DELAY:] = [np.nan if name in free else alike for name, alike in ALIKE.items()]
-    for name, value in known.items():
+    for name, value in checked_known(known, PARAMETERS).items():
         if name == "beta":
-            held[:F_N] = checks.number(value, "known.beta", least=0.0)
-        elif name == "f_n":
-            held[F_N] = checks.number(value, "known.f_n", above=0.0)
-        elif name == "zeta":
-            held[ZETA] = checks.number(value, "known.zeta", least=0.0, most=checks.LARGEST_DAMPING)
-        elif name == CONTACT_STIFFNESS:
-            held[LAW] = held_compliance(value)
-        elif name == "delay":
-            held[DELAY] = checks.number(value, "known.delay")
-        elif name == "gain":
-            held[GAIN] = checks.number(value, "known.gain", above=0.0)
-        else:
-            checks.choice(name, "known", PARAMETERS)
-            mu = checks.number(value, "known.mu", least=1.0)
-            held[LAW] = held[LAW] if elastic else mu
+            held[:F_N] = value
+        elif name != "mu" or not elastic:
+            held[PLACES[name]] = value
     if system.modes.zeta.any():
         if not np.isnan(held[ZETA]):
             raise InputError("cannot use known.zeta: the system defines its damping; omit one of the two")

@@ -7,7 +7,7 @@ from ... import regimes
 from ...units.table import checked_unit, conversion
 from ..parameters import CONTACT_STIFFNESS
 from ..spring import spring_in_newtons
-from ..statistics.estimates import QUANTITIES, estimates, number, usable_errors
+from ..statistics.estimates import QUANTITIES, estimates, flags, usable_errors, with_error
 from ..statistics.least_squares import Errors
 from .data import ForcedTable
 from .fit import TableFit, parameter_names, shown_estimates
@@ -53,7 +53,7 @@ def labelled(
         errors = usable_errors(found, LAW, 1.0, bool(fit.problem.free[LAW]))
         shown = found._replace(standard_error=errors)
     ds = estimates(meanings, units, solution, shown, fit.problem.free, np.zeros(samples.row.size), "1")
-    ds = ds.assign(_of_samples(table, fit))
+    ds = ds.assign(_sample_variables(table, fit))
     if unit is not None:
         ds = ds.assign(_friction(table, fit, found, unit))
     sources = [
@@ -64,7 +64,7 @@ def labelled(
     return ds.drop_sel(parameter=hidden, parameter2=hidden)
 
 
-def _of_samples(table: ForcedTable, fit: TableFit) -> dict[str, xr.Variable]:
+def _sample_variables(table: ForcedTable, fit: TableFit) -> dict[str, xr.Variable]:
     """Variables on the samples: data and model as measured, residuals in degrees or relative."""
     samples, rows = fit.model.samples, table.rows
     phase = samples.is_phase
@@ -89,19 +89,15 @@ def _of_samples(table: ForcedTable, fit: TableFit) -> dict[str, xr.Variable]:
         "model": put(as_measured(samples.value + residual), "fitted", **in_units),
         "residual": put(np.where(phase, np.degrees(residual), residual), "fitted less measured", **relative),
         "sigma": put(np.where(phase, np.degrees(samples.sigma), samples.sigma), "standard error", **relative),
-        "quantity": put(phase.astype(np.int8), "what was measured", **_flags(QUANTITIES)),
+        "quantity": put(phase.astype(np.int8), "what was measured", **flags(QUANTITIES)),
         "mass": put((samples.mass + 1).astype(np.int16), "mass, counted from 1", units="1"),
         "set": put(sets[samples.row], "test, of one friction force"),
         "frequency": put(rows.frequency[samples.row], "frequency of the load or base", units="Hz"),
         "frequency_ratio": put(r[samples.row], "frequency over f_n", units="1"),
         "friction_ratio": put(beta[samples.row], "friction force over the load of this row", units="1"),
         "regime": put(fit.here.regime[samples.row], "regime of the motion fitted", **regime),
-        "reached": put(_reached(fit)[samples.row], "starts from which it is reached", **_flags(_REACHED)),
+        "reached": put(_reached(fit)[samples.row], "starts from which it is reached", **flags(_REACHED)),
     }
-
-
-def _flags(meanings: tuple[str, ...]) -> dict[str, object]:
-    return {"flag_values": np.arange(len(meanings), dtype=np.int8), "flag_meanings": " ".join(meanings)}
 
 
 def _reached(fit: TableFit) -> np.ndarray:
@@ -155,10 +151,11 @@ def _per_set(
 
     There is no standard error where the gain is fitted: the load or the masses may have the wrong one.
     """
-    result, known = {}, not fit.problem.free[GAIN]
+    result: dict[str, xr.Variable] = {}
+    known = not fit.problem.free[GAIN]
     for k, name in enumerate(parameter_names(table, fit.model.elastic)[:F_N]):
         own, size = name.replace("beta", named[0]), table.load[k] * scale
-        result[own] = number(fit.solution.values[k] * size, named[1], unit)
         error = found.standard_error[k] * size if known else np.nan
-        result[f"{own}_standard_error"] = number(error, f"standard error of {own}", unit)
+        value, words = fit.solution.values[k] * size, f"standard error of {own}"
+        result |= with_error(own, value, error, named[1], unit, words)
     return result

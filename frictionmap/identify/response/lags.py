@@ -5,6 +5,7 @@ import xarray as xr
 
 from ...errors import InputError
 from ...model.system import System
+from ..statistics.estimates import flags
 from .data import ForcedTable, most_beyond
 from .fit import TableFit
 from .model import DELAY, F_N, GAIN, ZETA, Samples, corrected
@@ -50,12 +51,8 @@ def friction_ratios(fit: TableFit) -> dict[str, xr.Variable]:
     inversions = invert(fit.model.with_zeta(float(values[ZETA])), r, samples.value[lags], samples.mass[lags])
     status = np.full(samples.row.size, _NO_LAG, dtype=np.int8)
     status[lags] = [one.code for one in inversions]
-    flags = {
-        "long_name": "friction ratios that follow from the lag",
-        "flag_values": np.arange(_NO_LAG + 1, dtype=np.int8),
-        "flag_meanings": " ".join((*MEANINGS, "no_lag")),
-    }
-    found = {"lag_status": xr.Variable("sample", status, flags)}
+    attributes = {"long_name": "friction ratios that follow from the lag", **flags((*MEANINGS, "no_lag"))}
+    found = {"lag_status": xr.Variable("sample", status, attributes)}
     counts = [len(one.beta) for one in inversions]
     if sum(counts):
         beta, slope = (

@@ -16,9 +16,12 @@ import numpy as np
 from ...model.modes import wrapped
 from ...model.system import System
 from ...steady.points import States, steady_states
-from ..spring import STIFFEST
+from ..parameters import CONTACT_STIFFNESS, STIFFEST
 
 F_N, ZETA, LAW, DELAY, GAIN = -5, -4, -3, -2, -1
+
+#: Places of the parameters by their names; mu and the spring of a contact have one place.
+PLACES = {"f_n": F_N, "zeta": ZETA, "mu": LAW, CONTACT_STIFFNESS: LAW, "delay": DELAY, "gain": GAIN}
 
 #: Steps of differences, relative or absolute: steady states are exact to some 1e-12.
 _STEP = 1e-6

@@ -50,7 +50,7 @@ def starts(model: ForcedModel, known: np.ndarray) -> list[np.ndarray]:
     """
     channels = np.where(np.isnan(known[DELAY:]), list(ALIKE.values()), known[DELAY:])
     model = corrected(model, *channels.tolist())
-    tempered = model._replace(samples=_tempered(model))
+    tempered = model._replace(samples=_inflate_errors(model))
     frequencies = _candidates(model) if np.isnan(known[F_N]) else [known[F_N]]
     dampings = _DAMPINGS if np.isnan(known[ZETA]) else [known[ZETA]]
     first_laws = _COMPLIANCES if model.elastic else (1.0,)
@@ -81,7 +81,7 @@ def _differ(model: ForcedModel, one: np.ndarray, other: np.ndarray) -> bool:
     return other_spring or bool(abs(np.log(one[F_N] / other[F_N])) > _APART)
 
 
-def _tempered(model: ForcedModel) -> Samples:
+def _inflate_errors(model: ForcedModel) -> Samples:
     """The samples with larger errors."""
     samples = model.samples
     least = np.where(samples.is_phase, _LOOK_PHASE, _LOOK_AMPLITUDE)

@@ -26,7 +26,7 @@ from .decay import FREE_DECAY
 from .forced import FORCED
 from .joint import JOINT, checked_data, data_paths, fit_together
 from .record import RECORD
-from .rig import KNOWN_UNITS, Kind, Rig
+from .rig import NUMBERS, Kind, Rig
 from .sweep import SWEEP
 
 #: Description of every kind of data.
@@ -185,7 +185,7 @@ def _checked_free(
 
 def _known_number(value: object, key: str) -> float:
     """Convert a number of [known], with a unit to that of the key."""
-    unit = KNOWN_UNITS.get(key, "")
+    unit = NUMBERS[key].unit if key in NUMBERS else ""
     if unit and isinstance(value, str):
         found = quantity(value, f"known.{key}", UNITS[unit].measures)
         number = rounded(found.value / UNITS[unit].size)

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ... import checks
-from ...errors import InputError
+from ...errors import InputError, naming
 from ...files.config import read_system
 from ...model.system import System
 from ...units.table import COLUMN_NAMES, conversion
@@ -54,15 +54,13 @@ def _fit_forced(rig: Rig, table: Table) -> xr.Dataset:
     ratios = _ratios(rig, system, picked, frequency, load)
     known = dict(rig.known)
     stiffness = known.pop("stiffness", None)
-    try:
+    with naming(f"file {rig.file}"):
         ds = forced(
             frequency, lags or None, ratios or None, system=system, load=load, unit=unit, stiffness=stiffness,
             sets=_sets(rig, table, picked.rows), known=known, sigma_phase=sigmas[0],
             sigma_amplitude=sigmas[1], unreachable=rig.data.get("unreachable", "refuse"),
             loss=checks.choice(rig.fit.get("loss", LOSSES[0]), "fit.loss", LOSSES), free=rig.free,
         )  # fmt: skip
-    except InputError as error:
-        raise InputError(f"file {rig.file}: {error}") from None
     return with_remarks(ds, table, picked, _left_out(system, rig, table))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ... import checks
-from ...errors import InputError
+from ...errors import InputError, naming
 from ...files.config import unknown_key
 from ...units.table import conversion
 from ..joint_fit.joint import KNOWN, joint
@@ -87,13 +87,11 @@ def fit_together(rig: Rig) -> xr.Dataset:
     known = dict(rig.known)
     stiffness = known.pop("stiffness", None)
     options: dict[str, Any] = dict(rig.fit)
-    try:
+    with naming(f"files {', '.join(map(str, rig.files[1:]))}"):
         ds = joint(
             data, labels=[part["label"] for part in parts], unit=_UNIT, contact=contact,
             damping_reference=reference, known=known, stiffness=stiffness, **options,
         )  # fmt: skip
-    except InputError as error:
-        raise InputError(f"files {', '.join(str(path) for path in rig.files[1:])}: {error}") from None
     ds.attrs["warnings"] = "; ".join(filter(None, (*remarks, ds.attrs["warnings"])))
     ds.attrs["data_file"] = ", ".join(path.as_posix() for path in rig.files[1:])
     return ds
@@ -113,10 +111,8 @@ def _arrays(table: Table, part: Mapping[str, Any], remarks: list[str]) -> list[n
         picked.columns[role].values * conversion(picked.columns[role].unit, units[measures])
         for role, measures in wanted.items()
     ]
-    try:
+    with naming(f"file {table.file}"):
         inside = within(part["window"], arrays[0])
-    except InputError as error:
-        raise InputError(f"file {table.file}: {error}") from None
     return [values[inside] for values in arrays]
 
 

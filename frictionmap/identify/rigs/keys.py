@@ -19,7 +19,7 @@ from ..tables.text_files import DECIMALS
 from ..time_series.motion import CONTACTS
 from .configuration import JOINT_NAME, KINDS
 from .joint import DATA_KEYS, JOINED, JOINT
-from .rig import KNOWN_UNITS
+from .rig import NUMBERS
 
 #: Descriptions of the tables.
 TABLES = {
@@ -123,36 +123,13 @@ _SYSTEMS = {
     ),
 }
 
-_KNOWN = {
-    "f_n": ("natural frequency, Hz", "3.12"),
-    "zeta": ("viscous damping ratio", "0.01"),
-    "beta": ("friction ratio of all sets", "0.2"),
-    "mu": ("static over kinetic friction force, >= 1", "1.0"),
-    "contact_stiffness": ("stiffness of a spring in the contact over k1; default: rigid", "3.0"),
-    "delay": ("time by which masses are measured later than the base or load; default: 0, s", "0.002"),
-    "gain": ("gain of the channels of masses over that of the base or load; default: 1", "1.02"),
-    "x_F": ("kinetic friction force over stiffness, mm", "0.2"),
-    "X0": ("amplitude at t0, mm", "9.5"),
-    "t0": ("time of the first turning point, s", "0.0"),
-    "centre": ("position of the unloaded mass, mm", "0.0"),
-    "offset_x": ("position of the unloaded mass for zero base displacement, mm", "0.0"),
-    "base_mm": ("base amplitude Y for which beta = x_F/Y is reported, mm", "1.75"),
-    "stiffness": ("spring stiffness, N/m: gives the friction force in N", "1191.0"),
-    "f_k1m1": ("natural frequency of mass 1 on its spring alone, Hz", "3.0"),
-    "gamma": ("mass ratio m_2/m_1, of two masses", "1.0"),
-    "kappa": ("stiffness ratio k_2/k_1, of two masses", "1.0"),
-}
-_KNOWN |= {f"mass_ratio_{k}": (f"mass ratio m_{k}/m_1", "1.0") for k in range(2, MOST_MASSES + 1)}
-_KNOWN |= {f"stiffness_ratio_{k}": (f"stiffness ratio k_{k}/k_1", "1.0") for k in range(2, MOST_MASSES + 1)}
-_KNOWN |= {f"zeta_{k}": (f"damping ratio of mode {k}", "0.01") for k in range(1, MOST_MASSES + 1)}
-
 
 def _known(name: str) -> Key:
-    """A key of [known]; with the unit that its meaning ends in, or with any other of that kind as text."""
-    meaning, example = _KNOWN[name]
-    if name not in KNOWN_UNITS:
+    """A key of [known]: in its unit, or with any other of that kind as text."""
+    meaning, example, unit, _ = NUMBERS[name]
+    if not unit:
         return Key(name, meaning, number(), example=example)
-    kind = UNITS[KNOWN_UNITS[name]].measures
+    kind = UNITS[unit].measures
     words = f"a number, or text with a unit: {', '.join(units_of(kind))}"
     return Key(name, meaning, either(number(), with_unit(kind)), example=example, words=words)
 

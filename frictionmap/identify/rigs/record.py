@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ... import checks
-from ...errors import InputError
+from ...errors import InputError, naming
 from ...files.config import unknown_key
 from ...model.system import DAMPING_REFERENCES
 from ...units.table import COLUMN_NAMES, conversion
@@ -16,15 +16,12 @@ from ..tables.columns import Column, check_increasing, pick_columns
 from ..tables.files import Table
 from ..time_series.motion import CONTACTS
 from ..time_series.record import FITTABLE, record
-from .rig import Kind, Rig, check_columns, with_remarks
+from .rig import Kind, Rig, check_columns, in_unit, with_remarks
 
 _WANTED = {"time": "time", "base": "motion", "x": "motion"}
 
 #: Noise of displacements beyond this share of the motion is much.
 _NOISY = 0.05
-
-#: Keys given in mm, for any unit of the data.
-_LENGTHS = ("x_F", "offset_x")
 
 SYSTEM_KEYS = ("contact", "damping_reference", "excitation", "contact_masses")
 
@@ -36,20 +33,15 @@ def _record(rig: Rig, table: Table) -> xr.Dataset:
     time, base, x = (picked.columns[role] for role in _WANTED)
     check_increasing(table, time, picked.rows)
     unit = "mm" if derivative_order(COLUMN_NAMES[x.unit]) else x.unit
-    known = {
-        key: value * conversion("mm", unit) if key in _LENGTHS else value for key, value in rig.known.items()
-    }
+    known = in_unit(rig.known, unit)
     stiffness = known.pop("stiffness", None)
     options: dict[str, Any] = dict(rig.fit)
-    try:
+    with naming(f"file {rig.file}, columns {time.name}, {base.name} and {x.name}"):
         times, found = _displaced(time, base, x, unit, rig.data.get("window"))
         ds = record(
             times, found.base, found.x, unit=unit, contact=contact, damping_reference=reference, known=known,
             stiffness=stiffness, window=rig.data.get("window"), free=rig.free, **options,
         )  # fmt: skip
-    except InputError as error:
-        names = f"columns {time.name}, {base.name} and {x.name}"
-        raise InputError(f"file {rig.file}, {names}: {error}") from None
     remarks = _integration_warnings((base, x), found)
     ds.attrs["warnings"] = "; ".join(filter(None, (*remarks, ds.attrs["warnings"])))
     return with_remarks(ds, table, picked)

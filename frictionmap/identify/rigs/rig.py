@@ -7,6 +7,9 @@ from typing import NamedTuple
 import xarray as xr
 
 from ...files.config import unknown_key
+from ...units.table import conversion
+from ..chain.data import MOST_MASSES
+from ..parameters import PARAMETERS, Parameter
 from ..tables.choices import Choice
 from ..tables.columns import Columns, unused_columns
 from ..tables.files import Table
@@ -32,11 +35,29 @@ class Rig(NamedTuple):
     files: tuple[Path, ...]
 
 
-#: Units of numbers of [known] that have one; as text they may be in another of its kind.
-KNOWN_UNITS = {
-    "f_n": "Hz", "f_k1m1": "Hz", "x_F": "mm", "X0": "mm", "centre": "mm", "offset_x": "mm", "base_mm": "mm",
-    "stiffness": "N/m", "t0": "s", "delay": "s",
-}  # fmt: skip
+#: Numbers of [known] that are no parameters: scales of the results; parameters of chains without friction.
+SCALES = {
+    "base_mm": Parameter("base amplitude Y for which beta = x_F/Y is reported, mm", "1.75", "mm"),
+    "stiffness": Parameter("spring stiffness, N/m: gives the friction force in N", "1191.0", "N/m"),
+}
+CHAIN = {
+    "f_k1m1": Parameter("natural frequency of mass 1 on its spring alone, Hz", "3.0", "Hz"),
+    "gamma": Parameter("mass ratio m_2/m_1, of two masses", "1.0"),
+    "kappa": Parameter("stiffness ratio k_2/k_1, of two masses", "1.0"),
+}
+_MASSES = range(1, MOST_MASSES + 1)
+CHAIN |= {f"mass_ratio_{k}": Parameter(f"mass ratio m_{k}/m_1", "1.0") for k in _MASSES[1:]}
+CHAIN |= {f"stiffness_ratio_{k}": Parameter(f"stiffness ratio k_{k}/k_1", "1.0") for k in _MASSES[1:]}
+CHAIN |= {f"zeta_{k}": Parameter(f"damping ratio of mode {k}", "0.01") for k in _MASSES}
+
+#: Numbers of [known] by their keys; as text they may be in another unit of the same kind.
+NUMBERS = PARAMETERS | SCALES | CHAIN
+
+
+def in_unit(known: Mapping[str, float], unit: str) -> dict[str, float]:
+    """Numbers of [known], lengths in the unit of the data."""
+    scale = conversion("mm", unit)
+    return {key: value * scale if NUMBERS[key].unit == "mm" else value for key, value in known.items()}
 
 
 class Kind(NamedTuple):

@@ -6,7 +6,7 @@ from typing import Any
 import xarray as xr
 
 from ... import checks
-from ...errors import InputError
+from ...errors import InputError, naming
 from ...files.config import unknown_key
 from ...units.table import conversion
 from ..chain.data import MOST_MASSES
@@ -29,16 +29,14 @@ def _sweep(rig: Rig, table: Table) -> xr.Dataset:
             check_positive(table, column, picked.rows)
     ratios, lags = (_by_mass(picked, role, masses) for role in _MEASURES)
     frequency = picked.columns["frequency"]
-    try:
+    names = ", ".join(column.name for column in picked.columns.values())
+    with naming(f"file {rig.file}, columns {names}"):
         ds = sweep(
             frequency.values * conversion(frequency.unit, "Hz"),
             {mass: column.values for mass, column in ratios.items()},
             {mass: column.values * conversion(column.unit, "deg") for mass, column in lags.items()} or None,
             masses=masses, known=rig.known, **_options(rig),
         )  # fmt: skip
-    except InputError as error:
-        names = ", ".join(column.name for column in picked.columns.values())
-        raise InputError(f"file {rig.file}, columns {names}: {error}") from None
     return with_remarks(ds, table, picked)
 
 

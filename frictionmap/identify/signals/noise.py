@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import chdtrc
 
+from ...errors import InputError
 from ..statistics.least_squares import Noise
 from ..statistics.levels import CHANCE
-from ..statistics.orthonormal import orthonormal
 
 #: What a right model leaves at the harmonics exceeds the noise beside them this rarely.
 _CHANCE_OF_MODEL = 1e-5
@@ -46,6 +46,25 @@ class AtHarmonics(NamedTuple):
     def square(self, residual: np.ndarray) -> float:
         """Chi square of residuals at the harmonics, without the constant; 0 if there is no noise."""
         return float(np.sum(self.over_noise(residual)[1:] ** 2)) if self.variance > 0.0 else 0.0
+
+
+def orthonormal(columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Q and the inverse of R: twice by Cholesky's decomposition, exact to rounding while columns differ.
+
+    Three products of matrices; LAPACK's decomposition of tall matrices waits for its threads at every column.
+    """
+    orthogonal, inverse = columns, np.eye(columns.shape[1])
+    for _ in range(2):
+        try:
+            triangle = np.linalg.cholesky(orthogonal.T @ orthogonal).T
+        except np.linalg.LinAlgError:
+            raise InputError(
+                "cannot determine harmonics of the base: a gap in time makes some of them "
+                "indistinguishable; choose a window without it"
+            ) from None
+        step = np.linalg.inv(triangle)
+        orthogonal, inverse = orthogonal @ step, inverse @ step
+    return orthogonal, inverse
 
 
 def slow_waves(time: np.ndarray, frequency: float) -> np.ndarray:

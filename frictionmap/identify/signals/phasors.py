@@ -13,8 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...errors import InputError
-from ..statistics.orthonormal import orthonormal
-from .noise import noise_levels, slow_waves, wanders
+from .noise import noise_levels, orthonormal, slow_waves, wanders
 
 #: Harmonics, fewer where the highest one would have fewer samples per cycle than this.
 _HARMONICS = 9

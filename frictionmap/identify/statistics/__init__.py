@@ -3,7 +3,6 @@
 =============  ===========================================================================
 module         what is in it
 =============  ===========================================================================
-orthonormal    orthonormal columns of tall matrices
 least_squares  least squares with bounds; standard errors, intervals, correlations
 robust         least squares in which outliers have little weight
 weights        errors where variances of lags, or of amplitudes, follow from the residuals

@@ -1,12 +1,14 @@
 """Estimates with their errors as a labelled dataset."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 import xarray as xr
 
+from ... import checks
 from ...datasets.labels import REFERENCES
 from ...datasets.provenance import now
+from ...units.table import conversion
 from ...version import __version__
 from .least_squares import Errors, Solution
 
@@ -19,15 +21,44 @@ def number(value: float, long_name: str, units: str = "1") -> xr.Variable:
     return xr.Variable((), float(value), {"long_name": long_name, "units": units})
 
 
+def with_error(
+    name: str, value: float, error: float, words: str, units: str, words_of_error: str = ""
+) -> dict[str, xr.Variable]:
+    """A labelled number and its standard error."""
+    return {
+        name: number(value, words, units),
+        f"{name}_standard_error": number(error, words_of_error or f"standard error of the {words}", units),
+    }
+
+
+def friction_force(
+    length: float, error: float, stiffness: float, unit: str, label: str = ""
+) -> dict[str, xr.Variable]:
+    """The friction force k x_F [N] of a length x_F in `unit`, with its standard error.
+
+    stiffness : k [N/m]
+    label : of the measurement, one of several
+    """
+    newtons = checks.number(stiffness, "stiffness", above=0.0) * conversion(unit, "m")
+    name, words = "friction_force", "kinetic friction force k x_F"
+    if label:
+        name, words = f"{name}_{label}", f"{words}, {label}"
+    return with_error(name, newtons * length, newtons * error, words, "N")
+
+
+def flags(meanings: Collection[str]) -> dict[str, object]:
+    """Attributes of a variable whose codes count meanings from 0."""
+    return {"flag_values": np.arange(len(meanings), dtype=np.int8), "flag_meanings": " ".join(meanings)}
+
+
 def verdict(code: int, meanings: Mapping[str, str]) -> xr.Variable:
     """Verdict as a CF flag; codes count the meanings from 0."""
-    flags = {
+    attributes = {
         "long_name": "what the data show",
-        "flag_values": np.arange(len(meanings), dtype=np.int8),
-        "flag_meanings": " ".join(meanings),
+        **flags(meanings),
         "comment": "; ".join(f"{name}: {words}" for name, words in meanings.items()),
     }
-    return xr.Variable((), np.int8(code), flags)
+    return xr.Variable((), np.int8(code), attributes)
 
 
 def usable_errors(found: Errors, index: int, bound: float, fitted: bool) -> np.ndarray:

@@ -58,7 +58,7 @@ class Noise(NamedTuple):
     freedom: int  # degrees of freedom by which it is known
 
 
-class Allowance(NamedTuple):
+class ErrorScaling(NamedTuple):
     """Factors of standard errors, and degrees of freedom, that replace those of the slopes."""
 
     larger: np.ndarray  # (parameters,) factors of standard errors
@@ -101,6 +101,17 @@ def minimise(problem: Problem, start: np.ndarray, most: int | None = None) -> So
         candidates = np.logical_or.reduce([candidates, *(_below(problem, fit) for fit in held_fits)])
 
 
+def continued_below(problem: Problem) -> Problem:
+    """The problem with residuals that go on as straight lines below the floor, where there is no model."""
+
+    def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        inside = np.maximum(values, problem.floor)
+        residual, slopes = problem.residuals(inside)
+        return residual + slopes @ (values - inside), slopes
+
+    return problem._replace(residuals=residuals)
+
+
 def _below(problem: Problem, fit: Solution) -> np.ndarray:
     """Free parameters below their bounds, bool (parameters,)."""
     return problem.free & (fit.values < problem.floor)
@@ -111,7 +122,7 @@ def errors(
     best: Solution,
     known_variance: float | None = None,
     noise: Noise | None = None,
-    allowance: Allowance | None = None,
+    scaling: ErrorScaling | None = None,
 ) -> Errors:
     """Standard errors, 95 % intervals and correlations from the slopes at the least sum.
 
@@ -132,9 +143,9 @@ def errors(
         variance, freedom = noise.variance, noise.freedom
         inverse, grown = _with_excess(inverse, best.slopes, noise.excess)
     larger, freedoms = grown, np.full(free.size, float(freedom))
-    if allowance is not None:
-        larger = grown * allowance.larger
-        freedoms = freedoms if allowance.freedom is None else allowance.freedom
+    if scaling is not None:
+        larger = grown * scaling.larger
+        freedoms = freedoms if scaling.freedom is None else scaling.freedom
     standard_error = deviation * np.sqrt(variance) * larger
     scale = np.where(free, deviation * (grown if noise is not None else 1.0), 1.0)
     correlation = np.where(np.eye(free.size, dtype=bool), 1.0, inverse / np.outer(scale, scale))

@@ -25,7 +25,7 @@ _SETTLED, _STEPS = 1e-6, 200
 _UNSEEN = 1e-6
 
 
-def softened(problem: Problem, scale: float) -> Problem:
+def soften(problem: Problem, scale: float) -> Problem:
     """The problem with residuals beyond `scale` > 0 weighted down."""
 
     def residuals(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

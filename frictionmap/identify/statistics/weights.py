@@ -10,7 +10,8 @@ p_k = (P I_k P)_jj/P_jj; that variance has 1/sum_k p_k^2/n_k degrees of freedom 
 
 import numpy as np
 
-from .least_squares import Allowance, Problem, Solution, leverage, unscaled_covariance
+from .least_squares import Errors, ErrorScaling, Problem, Solution, errors, leverage, unscaled_covariance
+from .robust import effective_variance, jackknife_growth
 
 
 def freedom_by_kind(best: Solution, free: np.ndarray, kind: np.ndarray) -> np.ndarray:
@@ -23,7 +24,9 @@ def freedom_by_kind(best: Solution, free: np.ndarray, kind: np.ndarray) -> np.nd
     return np.maximum(np.bincount(kind, left), 1.0)
 
 
-def estimated_weights(problem: Problem, best: Solution, kind: np.ndarray, unknown: np.ndarray) -> Allowance:
+def estimated_weights(
+    problem: Problem, best: Solution, kind: np.ndarray, unknown: np.ndarray
+) -> ErrorScaling:
     """Factors of the standard errors if the variances of some kinds of samples were estimated.
 
     kind : (samples,) from 0
@@ -41,4 +44,22 @@ def estimated_weights(problem: Problem, best: Solution, kind: np.ndarray, unknow
             excess += np.diag(own - share @ own) / freedom
             spread += (np.diag(own) / variance) ** 2 / freedom
     larger = np.sqrt(1.0 + 4.0 * np.maximum(excess, 0.0) / variance)
-    return Allowance(larger, 1.0 / np.maximum(spread, 1.0 / in_all))
+    return ErrorScaling(larger, 1.0 / np.maximum(spread, 1.0 / in_all))
+
+
+def table_errors(
+    plain: Problem, task: Problem, best: Solution, kind: np.ndarray, given: np.ndarray, outliers: float | None
+) -> tuple[Errors, ErrorScaling, float | None]:
+    """Errors of a fit to several kinds of samples, how they were scaled, and the variance if it is known.
+
+    plain : each sample with its full weight; `task` is what was solved
+    given : (kinds,) bool, whether the errors of a kind were given
+    outliers : residuals beyond this have little weight; None: all count alike
+    """
+    if outliers is None:
+        variance = 1.0 if given.any() else None
+        scaling = estimated_weights(task, best, kind, ~given)
+    else:
+        variance = effective_variance(plain, best, outliers)
+        scaling = ErrorScaling(jackknife_growth(plain._replace(free=task.free), best, outliers))
+    return errors(task, best, variance, scaling=scaling), scaling, variance

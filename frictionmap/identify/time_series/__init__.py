@@ -13,6 +13,7 @@ errors           standard errors of the fit and of derived quantities
 estimates        estimates, and how far those of other models are from them
 labels           results of a record that need no model, and warnings
 verdict          verdict on a record, and identifiability
+part             a record as a part of a joint fit
 record           `record`: from arrays to estimates
 ===============  ===================================================================
 """

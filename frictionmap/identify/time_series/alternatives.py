@@ -29,13 +29,12 @@ class Task(NamedTuple):
     damping_reference: str
     known: Mapping[str, float]  # parameters that are held
     elastic: bool
-    robust: bool
     thorough: bool = True  # see `fit_record`
 
     def fitted(self, given: MeasuredRecord) -> tuple[MeasuredRecord, RecordFit]:
         """The record as it was used, and the fit."""
         return fit_clipped(
-            self.contact, self.damping_reference, given, self.known, self.robust, self.elastic, self.thorough
+            self.contact, self.damping_reference, given, self.known, self.elastic, self.thorough
         )
 
 

@@ -41,6 +41,7 @@ class MeasuredRecord(NamedTuple):
     good: np.ndarray  # shape (samples,), bool: samples of the mass that are part of the fit
     phasors: Phasors
     samples: Samples  # of the mass, where it is good
+    robust: bool  # whether there may be outliers
 
 
 def measured_record(
@@ -54,9 +55,9 @@ def measured_record(
     whole = unclipped(times, channels[:, 0])
     t, data = times[whole], channels[whole]
     good = unclipped(t, data[:, 1])
-    phasors, tamed = _checked_phasors(t, data, robust, spring.LEAD if elastic else _LEAD)
-    samples = samples_of(phasors, t, data[:, 1], tamed[:, 1], good, robust)
-    return MeasuredRecord(times, t, data, ~good, _limits(data[:, 1], good), good, phasors, samples)
+    phasors, winsorised = _checked_phasors(t, data, robust, spring.LEAD if elastic else _LEAD)
+    samples = samples_of(phasors, t, data[:, 1], winsorised[:, 1], good, robust)
+    return MeasuredRecord(times, t, data, ~good, _limits(data[:, 1], good), good, phasors, samples, robust)
 
 
 def _limits(x: np.ndarray, good: np.ndarray) -> tuple[float, float]:
@@ -66,7 +67,7 @@ def _limits(x: np.ndarray, good: np.ndarray) -> tuple[float, float]:
 
 
 def fit_clipped(
-    contact: str, damping_reference: str, given: MeasuredRecord, known: Mapping[str, float], robust: bool,
+    contact: str, damping_reference: str, given: MeasuredRecord, known: Mapping[str, float],
     elastic: bool = False, thorough: bool = True,
 ) -> tuple[MeasuredRecord, RecordFit]:  # fmt: skip
     """Fit a steady motion as by `fit_record`, without what happens beside the ends of a measuring range.
@@ -86,7 +87,7 @@ def fit_clipped(
         inside = _inside(given, fit)
         if inside.sum() < _FEWEST or (inside == given.good).all():
             break
-        given = _filled(given, fit, inside, robust)
+        given = _filled(given, fit, inside)
         fit = fitted(given)
     return given, fit
 
@@ -98,17 +99,17 @@ def _inside(given: MeasuredRecord, fit: RecordFit) -> np.ndarray:
     return ~given.clipped & (fitted > lowest + margin) & (fitted < highest - margin)
 
 
-def whole_record(given: MeasuredRecord, fit: RecordFit, robust: bool) -> MeasuredRecord:
+def whole_record(given: MeasuredRecord, fit: RecordFit) -> MeasuredRecord:
     """The record with the fitted motion where it is clipped, and the harmonics of that."""
-    return given if not given.clipped.any() else _filled(given, fit, given.good, robust)
+    return given if not given.clipped.any() else _filled(given, fit, given.good)
 
 
-def _filled(given: MeasuredRecord, fit: RecordFit, used: np.ndarray, robust: bool) -> MeasuredRecord:
+def _filled(given: MeasuredRecord, fit: RecordFit, used: np.ndarray) -> MeasuredRecord:
     """The record with the fitted motion where it is clipped, its harmonics, and the samples to be used."""
     x = np.where(given.clipped, _fitted(given, fit), given.channels[:, 1])
     channels = np.column_stack((given.channels[:, 0], x))
-    phasors, tamed = harmonics_of(given.time, channels, robust)
-    samples = samples_of(phasors, given.time, x, tamed[:, 1], used, robust)
+    phasors, winsorised = harmonics_of(given.time, channels, given.robust)
+    samples = samples_of(phasors, given.time, x, winsorised[:, 1], used, given.robust)
     return given._replace(channels=channels, good=used, phasors=phasors, samples=samples)
 
 
@@ -127,7 +128,7 @@ def _checked_phasors(
                 f"cannot fit {name}: it does not move by more than its resolution ({resolution(places):g}); "
                 "check the data"
             )
-    phasors, tamed = harmonics_of(time, channels, robust)
+    phasors, winsorised = harmonics_of(time, channels, robust)
     ideal = phasors.inflation[0, 1] * phasors.rms[0] * np.sqrt(2.0 / time.size)
     if phasors.errors[0, 1] > _WORSE * ideal:
         raise InputError(
@@ -142,7 +143,7 @@ def _checked_phasors(
                 f"base, is {first:.3g} with an error of {error:.2g}; use a record in which the mass moves"
             )
     _check_lag(phasors, lead)
-    return phasors, tamed
+    return phasors, winsorised
 
 
 def _check_lag(phasors: Phasors, lead: float) -> None:

@@ -19,7 +19,7 @@ from ..signals.phasors import Phasors, first_harmonics
 from ..statistics.least_squares import Errors, errors, growth, two_sided
 from .fit import RecordFit, base_errors
 from .motion import F_N, GAIN, LAW, MU, OFFSET, PARAMETERS, X_F, ZETA
-from .static_friction import FITTED, IDLE, ONE, highest, interval, per_square
+from .static_friction import IDLE, ONE, highest, mu_interval, per_square
 
 #: What follows from the parameters and the phasors.
 DERIVED = ("beta", "lag_deg", "amplitude_ratio", "stops_per_cycle")
@@ -35,7 +35,7 @@ class _Linear(NamedTuple):
     covariance: np.ndarray  # shape (sources, sources)
 
     @property
-    def of_estimates(self) -> np.ndarray:
+    def estimate_covariance(self) -> np.ndarray:
         """Their covariance."""
         return self.transfer @ self.covariance @ self.transfer.T
 
@@ -57,11 +57,11 @@ def record_errors(fit: RecordFit, phasors: Phasors, time: np.ndarray, used: np.n
     size = len(PARAMETERS)
     on_bound = fit.solution.at_bound & fit.problem.free
     found = errors(fit.problem, fit.solution._replace(at_bound=on_bound), noise=fit.noise)
-    linear = _in_what_is_fitted(fit, phasors, time, used, found)
+    linear = _linear_in_fit(fit, phasors, time, used, found)
     of_law, elastic = float(found.standard_error[LAW]), fit.mass.elastic
     if not elastic:
         linear.transfer[MU] *= per_square(float(fit.values[MU]), of_law)
-    covariance = linear.of_estimates
+    covariance = linear.estimate_covariance
     deviation = np.sqrt(np.diag(covariance))
     scale = np.where(deviation > 0.0, deviation, 1.0)
     correlation = np.where(np.eye(deviation.size, dtype=bool), 1.0, covariance / np.outer(scale, scale))
@@ -70,16 +70,19 @@ def record_errors(fit: RecordFit, phasors: Phasors, time: np.ndarray, used: np.n
     lower, upper = values - reach * deviation, values + reach * deviation
     for index in np.flatnonzero(on_bound[:size]):  # one-sided, from the profile of the sum
         lower[index], upper[index] = 0.0, found.upper[index]
+    moved = np.zeros(fit.solution.values.size)
+    if not elastic:
+        idle = _mu_of_first_stop(fit) if fit.static == IDLE else np.inf
+        lower[LAW], upper[LAW], moved = mu_interval(
+            fit.static, fit.with_law, fit.solution, fit.noise, LAW, of_law, idle
+        )
+    elif fit.static == ONE:
+        lower[LAW] = 0.0
+        upper[LAW], moved = highest(fit.with_law, fit.solution, fit.noise, LAW)
     if fit.static == ONE:
-        most, moved = highest(fit.with_law, fit.solution, fit.noise, LAW)
-        lower[LAW], upper[LAW] = (0.0, most) if elastic else (lower[LAW], 1.0 + float(np.sqrt(most)))
         moves = np.concatenate((moved[:size], np.zeros(len(DERIVED))))
         moves[size] = moved[X_F] / (fit.values[GAIN] * abs(phasors.values[0, 1]))  # beta
         lower, upper = lower + np.minimum(moves, 0.0), upper + np.maximum(moves, 0.0)
-    elif fit.static == IDLE:
-        upper[MU] = _mu_of_first_stop(fit)
-    elif fit.static == FITTED and not elastic:
-        lower[MU], upper[MU] = interval(float(fit.solution.values[MU]), reach * of_law)
     if fit.free[GAIN]:
         _allow_for_both_units(lower, upper, values, abs(phasors.values[0, 1]))
     lower[_POSITIVE] = np.maximum(lower[_POSITIVE], 0.0)
@@ -107,7 +110,7 @@ def _mu_of_first_stop(fit: RecordFit) -> float:
     return max(fit.motion.turn_load / friction, 1.0) if friction > 0.0 else np.inf
 
 
-def _in_what_is_fitted(
+def _linear_in_fit(
     fit: RecordFit, phasors: Phasors, time: np.ndarray, used: np.ndarray, found: Errors
 ) -> _Linear:
     """Linear dependence of the parameters and of `DERIVED`, and the covariance of its sources."""

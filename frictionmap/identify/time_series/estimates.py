@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..explanations import Cause, Outcome, allowing_for
-from ..parameters import CHANNELS
+from ..parameters import CHANNELS, unit_of
 from ..spring import with_stiffness
 from ..statistics.least_squares import Errors
 from .alternatives import Tried
@@ -24,7 +24,7 @@ class Estimates(NamedTuple):
 
 def units(unit: str) -> tuple[str, ...]:
     """Units of the parameters and of `DERIVED`; `unit` is that of lengths."""
-    return ("Hz", "1", unit, "1", "s", "1", unit, "1", "deg", "1", "1")
+    return (*(unit_of(name, unit) for name in PARAMETERS), "1", "deg", "1", "1")
 
 
 def tolerances(one: Tried, found: Errors) -> dict[str, tuple[float, bool]]:
@@ -43,9 +43,9 @@ def tolerances(one: Tried, found: Errors) -> dict[str, tuple[float, bool]]:
     return result
 
 
-def estimated(one: Tried, robust: bool) -> Estimates:
+def model_estimates(one: Tried) -> Estimates:
     """Estimates of a model, and their errors."""
-    fit, given = one.fit, whole_record(one.given, one.fit, robust)
+    fit, given = one.fit, whole_record(one.given, one.fit)
     found = record_errors(fit, given.phasors, given.time, given.good)
     values = np.concatenate((fit.values, derived_values(fit, given.phasors)))
     if fit.mass.elastic:
@@ -53,9 +53,7 @@ def estimated(one: Tried, robust: bool) -> Estimates:
     return Estimates(given, values, found)
 
 
-def with_others(
-    outcome: Outcome[Tried], own: Estimates, unit: str, robust: bool
-) -> tuple[Errors, list[Cause]]:
+def with_others(outcome: Outcome[Tried], own: Estimates, unit: str) -> tuple[Errors, list[Cause]]:
     """Errors that allow for the other models; what explains the record.
 
     own : of the model that is reported
@@ -63,7 +61,7 @@ def with_others(
     chosen = outcome.chosen
     if chosen.name:
         return own.errors, [_cause(chosen, own, unit)]
-    tried = [(one, estimated(one, robust)) for one in outcome.others]
+    tried = [(one, model_estimates(one)) for one in outcome.others]
     derived = np.ones(len(DERIVED), dtype=bool)
     errors = [(found.errors, np.append(_same(chosen, one), derived)) for one, found in tried]
     causes = [_cause(one, found, unit) for one, found in tried if one.explains]

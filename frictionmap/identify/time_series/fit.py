@@ -11,10 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..parameters import CONTACT_STIFFNESS
+from ..parameters import CONTACT_STIFFNESS, SOFTEST
 from ..signals.noise import noise_of_fit
 from ..signals.phasors import Phasors, scatter_of
-from ..spring import SOFTEST
 from ..statistics.least_squares import Noise, Problem, Solution, minimise
 from ..statistics.robust import pseudo_residuals
 from .motion import (
@@ -130,19 +129,20 @@ class RecordFit(NamedTuple):
 
 
 def samples_of(
-    phasors: Phasors, time: np.ndarray, x: np.ndarray, tamed: np.ndarray, used: np.ndarray, robust: bool
+    phasors: Phasors, time: np.ndarray, x: np.ndarray, winsorised: np.ndarray, used: np.ndarray, robust: bool
 ) -> Samples:
     """The samples that are used.
 
-    time, x, tamed, used : shape (samples,), all that the phasors are of; x without outliers; which are used
+    time, x, winsorised, used : shape (samples,), all that the phasors are of; x without outliers; which are
+        used
     """
     line = time - phasors.middle
     slow = np.column_stack((line, phasors.waves))
     slow /= np.linalg.norm(slow[used], axis=0)
-    near = tamed - phasors.drift[1] * line - phasors.wander[:, 1]
+    near = winsorised - phasors.drift[1] * line - phasors.wander[:, 1]
     scale = float(scatter_of(phasors.residual[:, 1])) if robust else 0.0
     return Samples(
-        time[used], x[used], (tamed if scale else x)[used], near[used], slow[used], slow, scale or None
+        time[used], x[used], (winsorised if scale else x)[used], near[used], slow[used], slow, scale or None
     )
 
 

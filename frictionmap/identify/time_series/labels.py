@@ -25,7 +25,7 @@ def one_mass(contact: str, damping_reference: str) -> System:
     return System(excitation="base", **words)
 
 
-def of_record(given: MeasuredRecord, unit: str) -> dict[str, xr.Variable]:
+def record_variables(given: MeasuredRecord, unit: str) -> dict[str, xr.Variable]:
     """Results of the record without any model."""
     time, phasors = given.time, given.phasors
     first = np.abs(phasors.values[:, 1])
@@ -69,7 +69,7 @@ def of_record(given: MeasuredRecord, unit: str) -> dict[str, xr.Variable]:
     return result
 
 
-def of_data(given: MeasuredRecord, ds: xr.Dataset) -> list[str]:
+def data_warnings(given: MeasuredRecord, ds: xr.Dataset) -> list[str]:
     """Warnings about the data."""
     words = []
     phasors, time = given.phasors, given.every_time

@@ -21,9 +21,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...general.one_mass import steady_motion
-from ..parameters import ALIKE, CHANNELS, CONTACT_STIFFNESS
+from ..parameters import ALIKE, CHANNELS, CONTACT_STIFFNESS, STIFFEST
 from ..signals.phasors import Phasors, harmonics_at
-from ..spring import STIFFEST
 
 PARAMETERS = ("f_n", "zeta", "x_F", "mu", *CHANNELS, "offset_x")
 F_N, ZETA, X_F, MU, DELAY, GAIN, OFFSET = range(len(PARAMETERS))

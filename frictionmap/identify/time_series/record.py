@@ -9,21 +9,21 @@ from ... import checks
 from ...datasets.provenance import system_text
 from ...errors import InputError
 from ...model.system import DAMPING_REFERENCES
-from ...units.table import checked_unit, conversion
+from ...units.table import checked_unit
 from ..explanations import Outcome
-from ..parameters import ALIKE, CONTACT_STIFFNESS, checked_free, is_elastic, refuse_mu
-from ..spring import held_compliance, spring_in_newtons, spring_warnings
+from ..parameters import ALIKE, CONTACT_STIFFNESS, checked_free, checked_known, is_elastic, refuse_mu
+from ..spring import spring_in_newtons, spring_warnings
 from ..statistics.cautions import bound_warnings, correlation_warnings, interval_warnings
-from ..statistics.estimates import estimates, number, usable_errors, verdict
+from ..statistics.estimates import estimates, friction_force, number, usable_errors, verdict
 from ..statistics.least_squares import Errors, undetermined
 from ..statistics.levels import MISFIT, MISFIT_SHARE
 from ..statistics.robust import LOSSES
 from .alternatives import SEEN, Task, Tried, explained
 from .data import measured_record
 from .errors import DERIVED
-from .estimates import estimated, tolerances, units, with_others
+from .estimates import model_estimates, tolerances, units, with_others
 from .fit import RecordFit
-from .labels import of_data, of_record, one_mass
+from .labels import data_warnings, one_mass, record_variables
 from .motion import CONTACTS, GAIN, LAW, MU, OFFSET, PARAMETERS, X_F, ZETA, outer
 from .static_friction import IDLE, ONE
 from .verdict import listed, record_verdict
@@ -53,7 +53,7 @@ _MEANINGS = {
 }
 
 #: With a spring in the contact, in the places of mu and of stops.
-_OF_SPRING = {
+_SPRING_MEANINGS = {
     "mu": (
         CONTACT_STIFFNESS,
         "stiffness of the spring in the contact over that of the mass; on its bound: rigid",
@@ -150,9 +150,10 @@ def record(
     checks.choice(damping_reference, "damping_reference", DAMPING_REFERENCES)
     checks.choice(loss, "loss", LOSSES)
     elastic = is_elastic(checked_free(free, known or {}, FITTABLE), known or {})
-    held = checked_known(known or {}, free)
-    task = Task(contact, damping_reference, held, elastic, loss == "soft_l1")
-    given = measured_record(time, base, x, window, task.robust, elastic or "delay" not in held)
+    held = _held(known or {}, free)
+    task = Task(contact, damping_reference, held, elastic)
+    spring_or_delay = elastic or "delay" not in held
+    given = measured_record(time, base, x, window, loss == "soft_l1", spring_or_delay)
     calibrated = [name for name in ALIKE if name in (known or {})]
     outcome = explained(task, given, calibrated, free is None)
     fit = outcome.chosen.fit
@@ -160,9 +161,9 @@ def record(
         _check_identifiable(fit)
     if not known:  # a value that is held may be wrong on purpose
         _check_misfit(outcome)
-    own = estimated(outcome.chosen, task.robust)
+    own = model_estimates(outcome.chosen)
     given, values, found = own
-    covering, causes = with_others(outcome, own, unit, task.robust)
+    covering, causes = with_others(outcome, own, unit)
     shown = _usable(fit, covering)
     hidden = [name for name in ALIKE if name not in (*(known or {}), *(free or ()), outcome.chosen.name)]
     ds = _dataset(fit, values, shown, unit, hidden)
@@ -173,10 +174,12 @@ def record(
     base_used = given.channels[given.good, 0]
     ds["time"] = xr.Variable("sample", given.samples.time, {"long_name": "time", "units": "s"})
     ds["base"] = xr.Variable("sample", base_used, {"long_name": "base, measured", "units": unit})
-    ds = ds.assign(of_record(given, unit)).assign(_of_motion(fit, values, shown, unit, stiffness))
+    ds = ds.assign(record_variables(given, unit)).assign(
+        _motion_variables(fit, values, shown, unit, stiffness)
+    )
     ds.attrs["title"] = "Record of steady motion"
     ds.attrs["config"] = system_text(one_mass(contact, damping_reference))
-    ds.attrs["warnings"] = "; ".join(of_data(given, ds) + _of_fit(fit, found))
+    ds.attrs["warnings"] = "; ".join(data_warnings(given, ds) + _fit_warnings(fit, found))
     return ds
 
 
@@ -214,24 +217,13 @@ def _check_identifiable(fit: RecordFit) -> None:
         )
 
 
-def checked_known(known: Mapping[str, float], free: Sequence[str] | None) -> dict[str, float]:
-    """Parameters to be held, if they are known by name and in range; the compliance of a spring.
+def _held(known: Mapping[str, float], free: Sequence[str] | None) -> dict[str, float]:
+    """Parameters to be held, those by which channels are alike among them, one at least free.
 
     free : parameters to be fitted of a contact with a spring
     """
-    ranges: dict[str, dict[str, float]] = {
-        "f_n": {"above": 0.0},
-        "zeta": {"least": 0.0, "most": checks.LARGEST_DAMPING},
-        "x_F": {"least": 0.0},
-        "mu": {"least": 1.0},
-    }
-    result = {name: value for name, value in ALIKE.items() if name not in (free or ())}
-    for name, value in known.items():
-        checks.choice(name, "known", FITTABLE)
-        if name == CONTACT_STIFFNESS:
-            result[name] = held_compliance(value)
-            continue
-        result[name] = checks.number(value, f"known.{name}", **ranges.get(name, {}))
+    alike = {name: value for name, value in ALIKE.items() if name not in (free or ())}
+    result = alike | checked_known(known, FITTABLE)
     if is_elastic(free, known):
         refuse_mu(free, result)
         result.pop("mu", None)
@@ -247,7 +239,8 @@ def _dataset(fit: RecordFit, values: np.ndarray, found: Errors, unit: str, hidde
     """
     elastic, bound = fit.mass.elastic, fit.solution.at_bound[: len(PARAMETERS)]
     meanings = dict(
-        _OF_SPRING.get(name, (name, words)) if elastic else (name, words) for name, words in _MEANINGS.items()
+        _SPRING_MEANINGS.get(name, (name, words)) if elastic else (name, words)
+        for name, words in _MEANINGS.items()
     )
     solution = fit.solution._replace(
         values=values, residual=fit.residual, at_bound=np.append(bound, [bound[X_F], False, False, False])
@@ -274,7 +267,7 @@ def _usable(fit: RecordFit, found: Errors) -> Errors:
     return found._replace(standard_error=errors)
 
 
-def _of_motion(
+def _motion_variables(
     fit: RecordFit, values: np.ndarray, found: Errors, unit: str, stiffness: float | None
 ) -> dict[str, xr.Variable]:
     """Further results of the fitted motion."""
@@ -284,17 +277,14 @@ def _of_motion(
         share = "stuck_fraction", "share of the cycle in which the fit sticks"
     result = {share[0]: number(fit.motion.stuck, share[1])}
     if stiffness is not None:
-        newtons = checks.number(stiffness, "stiffness", above=0.0) * conversion(unit, "m")
+        force = friction_force(float(fit.values[X_F]), float(found.standard_error[X_F]), stiffness, unit)
         if fit.mass.elastic:
             result |= spring_in_newtons(values, found, LAW, float(stiffness))
-        error = newtons * float(found.standard_error[X_F])
-        words = "kinetic friction force k x_F"
-        result["friction_force"] = number(newtons * float(fit.values[X_F]), words, "N")
-        result["friction_force_standard_error"] = number(error, f"standard error of the {words}", "N")
+        result |= force
     return result
 
 
-def _of_fit(fit: RecordFit, found: Errors) -> list[str]:
+def _fit_warnings(fit: RecordFit, found: Errors) -> list[str]:
     """Warnings about the estimates."""
     words = []
     if not fit.motion.repeats:

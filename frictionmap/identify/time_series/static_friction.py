@@ -12,6 +12,7 @@ from ..statistics.least_squares import (
     growth,
     one_sided,
     profile_end,
+    two_sided,
     unscaled_covariance,
 )
 
@@ -46,6 +47,29 @@ def highest(problem: Problem, solution: Solution, noise: Noise, index: int) -> t
     moved = end.values - best.values
     moved[index] = 0.0
     return square, moved
+
+
+def mu_interval(
+    static: int, with_law: Problem, solution: Solution, noise: Noise, index: int, error: float,
+    idle: float = np.inf,
+) -> tuple[float, float, np.ndarray]:  # fmt: skip
+    """The interval of mu, and how the other values move up to its upper end if mu is 1 in the fit.
+
+    static : KNOWN, ONE, FITTED or IDLE
+    with_law : the problem with mu free, if it is not known
+    error : standard error of (mu - 1)^2
+    idle : the largest mu without an effect, if the mass never sticks
+    """
+    square, still = float(solution.values[index]), np.zeros(solution.values.size)
+    if static == ONE:
+        most, moved = highest(with_law, solution, noise, index)
+        return 1.0, 1.0 + float(np.sqrt(most)), moved
+    if static == IDLE:
+        return 1.0, idle, still
+    if static == FITTED:
+        return *interval(square, two_sided(noise.freedom) * error), still
+    mu = 1.0 + float(np.sqrt(max(square, 0.0)))
+    return mu, mu, still
 
 
 def interval(square: float, reach: float) -> tuple[float, float]:

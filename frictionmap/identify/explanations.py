@@ -158,7 +158,7 @@ def added(outcome: Outcome[Tried], causes: list[Cause]) -> str:
     """Words about what was added to a model, to be put after others; empty if nothing was."""
     if not outcome.chosen.name:
         return ""
-    return f": the model explains the data with {_words(causes[0])}, and without it does not"
+    return f": the model explains the data with {_describe(causes[0])}, and without it does not"
 
 
 def doubts(outcome: Outcome[Tried], causes: list[Cause]) -> dict[str, str]:
@@ -169,7 +169,7 @@ def doubts(outcome: Outcome[Tried], causes: list[Cause]) -> dict[str, str]:
     return {"explained_otherwise": _otherwise(causes), "not_explained": _unexplained(outcome)}
 
 
-def _words(cause: Cause) -> str:
+def _describe(cause: Cause) -> str:
     """What explains the data, with its interval."""
     unit = "" if cause.unit == "1" else f" {cause.unit}"
     what = ADDED.get(cause.name, f"another {cause.name} than the known one")
@@ -180,7 +180,7 @@ def _words(cause: Cause) -> str:
 def _otherwise(causes: list[Cause]) -> str:
     """Words about a model that explains the data with another parameter only."""
     several = ", which the data do not distinguish" if len(causes) > 1 else ""
-    with_them = " or ".join(_words(cause) for cause in causes)
+    with_them = " or ".join(_describe(cause) for cause in causes)
     new = [cause.name for cause in causes if cause.name in ADDED]
     held = [cause.name for cause in causes if cause.name not in ADDED]
     remedies = [f"hold {name} in known or list it in free" for name in new]

@@ -32,7 +32,7 @@ class Part:
     plain: Residuals  # fitted less measured, each sample with its full weight
     cautions: tuple[str, ...] = ()  # about the data
 
-    #: What is left at the harmonics of a base over the noise beside them; 1 if due to chance.
+    #: Residuals at the harmonics of a base, over the noise beside them; 1 if due to chance.
     model_error: float = 1.0
 
     @property

@@ -92,10 +92,7 @@ NAMES_OF_FUNCTIONS = (
 )
 
 #: Parts whose names and further texts are not checked; their docstrings and messages are.
-EXCEPTED = re.compile(
-    r"frictionmap/(identify/(time_series/|response/|joint_fit/parts\.py|explanations\.py))"
-    r"|tests/limits/"
-)
+EXCEPTED = re.compile(r"tests/limits/")
 
 #: First words of docstrings that are fragments.
 FRAGMENTS = r"(Of|Those of|That of|The same of|The same as|What of|Than)"

@@ -6,6 +6,7 @@ import numpy as np
 
 from ... import checks
 from ...errors import InputError
+from ..signals.samples import finite_numbers
 from .fit import Measured, peaks
 
 #: Values of the only mass measured, or by mass, counted from 1.
@@ -27,7 +28,7 @@ def checked_sweep(
 
     Without errors amplitudes and lags count alike, 1 rad as a relative error of 1.
     """
-    f = _frequencies(frequency)
+    f = finite_numbers(frequency, "frequency", above=0.0)
     parts = []
     for is_phase, (values, sigma) in enumerate(zip(quantities, _errors(quantities, sigmas), strict=True)):
         for mass, given in _by_mass(values, ("amplitude_ratio", "phase_lag")[is_phase], n).items():
@@ -55,15 +56,6 @@ def check_enough(data: Measured, known: np.ndarray) -> None:
             f"amplitude_ratio must have {number} peak{'s' * (wanted > 1)} for {number} "
             f"frequenc{'ies' if wanted > 1 else 'y'}; got {some}"
         )
-
-
-def _frequencies(values: object) -> np.ndarray:
-    """Frequencies in any order; the same one may stand there several times."""
-    f = np.atleast_1d(checks.array(values, "frequency"))
-    if f.dtype.kind not in "iuf" or f.ndim != 1 or not f.size:
-        raise InputError(f"frequency must be a list of numbers; got {checks.one_line(values)}")
-    _check(f, np.isfinite(f) & (f > 0.0), "frequency must be finite and > 0")
-    return f.astype(float)
 
 
 def _errors(
@@ -97,20 +89,6 @@ def _by_mass(values: Values | None, name: str, masses: int) -> Mapping[int, obje
 
 def _numbers(values: object, size: int, mass: int, is_phase: bool) -> np.ndarray:
     """Logarithms of amplitudes, or lags in radian."""
-    name = "phase_lag" if is_phase else "amplitude_ratio"
-    given = np.atleast_1d(checks.array(values, name))
-    if given.dtype.kind not in "iuf" or given.shape != (size,):
-        raise InputError(
-            f"{name} of mass {mass} must be {size} numbers, one per frequency; got {checks.one_line(values)}"
-        )
     if is_phase:
-        _check(given, np.isfinite(given), f"{name} of mass {mass} must be finite")
-        return np.radians(given)
-    _check(given, np.isfinite(given) & (given > 0.0), f"{name} of mass {mass} must be finite and > 0")
-    return np.log(given.astype(float))
-
-
-def _check(values: np.ndarray, good: np.ndarray, wanted: str) -> None:
-    wrong = np.flatnonzero(~good)
-    if wrong.size:
-        raise InputError(f"{wanted}; got {values[wrong[0]]} at index {wrong[0]}")
+        return np.radians(finite_numbers(values, f"phase_lag of mass {mass}", size))
+    return np.log(finite_numbers(values, f"amplitude_ratio of mass {mass}", size, above=0.0))

@@ -9,6 +9,7 @@ from ... import checks
 from ...errors import InputError
 from ...model.system import System
 from .. import spring
+from ..signals.samples import finite_numbers
 from .model import Rows, Samples
 
 #: Initial errors of the data, until the residuals give better ones: radian, and relative.
@@ -42,9 +43,11 @@ def checked_table(
     InputError
         Numbers are not finite, of another length or out of range; it names the index.
     """
-    f = _numbers(frequency, "frequency", None, above=0.0)
+    f = finite_numbers(frequency, "frequency", above=0.0, style="g")
     member, labels = _members(sets, f.size)
-    amplitudes = np.ones(f.size) if load is None else _numbers(load, "load", f.size, above=0.0)
+    amplitudes = (
+        np.ones(f.size) if load is None else finite_numbers(load, "load", f.size, above=0.0, style="g")
+    )
     means = np.bincount(member, amplitudes) / np.bincount(member)
     rows = Rows(f, amplitudes / means[member], member)
     lags = _by_mass(values[0], "phase_lag", system)
@@ -63,24 +66,11 @@ def checked_table(
     return ForcedTable(rows, samples, labels, means, (sigmas[0] is not None, sigmas[1] is not None))
 
 
-def _numbers(values: object, name: str, size: int | None, above: float = -np.inf) -> np.ndarray:
-    """Check a given number of finite numbers > above."""
-    given = np.atleast_1d(checks.array(values, name))
-    if given.dtype.kind not in "iuf" or given.ndim != 1 or given.size == 0 or size not in (None, given.size):
-        wanted = "numbers" if size is None else f"{size} numbers, one per frequency"
-        raise InputError(f"{name} must be {wanted}; got {checks.one_line(values)}")
-    wrong = np.flatnonzero(~(np.isfinite(given) & (given > above)))
-    if wrong.size:
-        valid = "finite" if above == -np.inf else f"finite and > {above:g}"
-        raise InputError(f"{name} must be {valid}; got {given[wrong[0]]:g} at index {wrong[0]}")
-    return given.astype(float)
-
-
 def _errors(values: object, name: str, size: int) -> np.ndarray:
     """Check errors > 0, one for all or one per frequency."""
     if np.ndim(checks.array(values, name)) == 0:
         return np.full(size, checks.number(values, name, above=0.0))
-    return _numbers(values, name, size, above=0.0)
+    return finite_numbers(values, name, size, above=0.0, style="g")
 
 
 def _members(sets: Sequence[object] | None, size: int) -> tuple[np.ndarray, tuple[str, ...]]:
@@ -151,14 +141,14 @@ def most_beyond(table: ForcedTable) -> np.ndarray:
 def _phases(
     system: System, mass: int, values: object, name: str, sigma: np.ndarray | None, size: int, elastic: bool
 ) -> Samples:
-    lag = _numbers(values, name, size)
+    lag = finite_numbers(values, name, size, style="g")
     check_lag(system, mass, lag, sigma, [f"{name} at index {index}" for index in range(size)], elastic)
     error = np.full(size, _PHASE) if sigma is None else np.radians(sigma)
     return Samples(np.arange(size), np.full(size, mass), np.ones(size, bool), np.radians(lag), error)
 
 
 def _amplitudes(mass: int, values: object, name: str, sigma: np.ndarray | None, size: int) -> Samples:
-    ratio = _numbers(values, name, size, above=0.0)
+    ratio = finite_numbers(values, name, size, above=0.0, style="g")
     error = np.full(size, _AMPLITUDE) if sigma is None else sigma
     return Samples(np.arange(size), np.full(size, mass), np.zeros(size, bool), np.log(ratio), error)
 

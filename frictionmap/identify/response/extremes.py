@@ -13,7 +13,8 @@ import numpy as np
 #: 1e-7 of what they began with, within which an extreme changes by less than a double can hold.
 _SAMPLES, _ROUNDS = 9, 10
 
-#: Samples around an extreme that are alike but for this share of the least are too far from zero to pass it.
+#: Samples around an extreme that are alike except for this share of the least are too far away from
+#: zero to pass it.
 _ALIKE = 0.25
 
 

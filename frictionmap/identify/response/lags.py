@@ -9,9 +9,9 @@ from ..statistics.estimates import flags
 from .data import ForcedTable, most_beyond
 from .fit import TableFit
 from .model import DELAY, F_N, GAIN, ZETA, Samples, corrected
-from .phase_inversion import MEANINGS, invert, reach
+from .phase_inversion import MEANINGS, distance_from_range, invert
 
-#: Code of what is no lag, after those of `MEANINGS`.
+#: Code of samples that are no lags, after those of `MEANINGS`.
 _NO_LAG = len(MEANINGS)
 
 
@@ -21,7 +21,7 @@ def impossible(table: ForcedTable, system: System, f_n: float) -> np.ndarray:
         return np.empty(0, dtype=int)
     samples = table.samples
     which = np.flatnonzero(samples.is_phase)
-    off = reach(system, table.rows.frequency[samples.row[which]] / f_n, samples.value[which])
+    off = distance_from_range(system, table.rows.frequency[samples.row[which]] / f_n, samples.value[which])
     return which[off > most_beyond(table)[which]]
 
 

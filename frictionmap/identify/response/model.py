@@ -114,7 +114,7 @@ def evaluate(model: ForcedModel, values: np.ndarray, free: np.ndarray) -> Fitted
     change[F_N] = by_r * (-r / values[F_N])[:, np.newaxis]
     for index, least in ((ZETA, 0.0), (LAW, model.least_law)):
         if free[index] and values[index] >= least:
-            change[index] = _slope(phasors, *_beside(model, values, index, least))
+            change[index] = _slope(phasors, *_neighbours(model, values, index, least))
     slopes = _sample_slopes(model.samples, phasors, change)
     slopes[:, DELAY] = np.where(model.samples.is_phase, _turns(model), 0.0) / model.samples.sigma
     slopes[:, GAIN] = np.where(model.samples.is_phase, 0.0, 1.0 / values[GAIN]) / model.samples.sigma
@@ -164,7 +164,7 @@ def _together(system: System, mu: float, pairs: list[tuple[np.ndarray, np.ndarra
     return [[States(*parts) for parts in one] for one in zip(*split, strict=True)]
 
 
-def _beside(
+def _neighbours(
     model: ForcedModel, values: np.ndarray, index: int, least: float
 ) -> list[tuple[list[States], np.ndarray]]:
     """States, and how far they are off, below and above the value of zeta or of the contact's parameter."""

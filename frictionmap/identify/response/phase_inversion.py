@@ -164,13 +164,13 @@ def is_one_on_wall(system: System) -> bool:
     return system.n == 1 and system.contact == "fixed-wall"
 
 
-def reach(system: System, r: np.ndarray, lag: np.ndarray) -> np.ndarray:
+def distance_from_range(system: System, r: np.ndarray, lag: np.ndarray) -> np.ndarray:
     """Distance of lags [rad] of the first mass from the range that friction can give, (points,)."""
     mass = np.zeros(r.size, dtype=int)
-    return _reach(_Measured(system, r, lag, mass), _look(system, r, mass))
+    return _distance(_Measured(system, r, lag, mass), _look(system, r, mass))
 
 
-def _reach(measured: _Measured, seen: _Lags) -> np.ndarray:
+def _distance(measured: _Measured, seen: _Lags) -> np.ndarray:
     """Distance of lags from the range that friction can give, (points,); 0 within it."""
     low, high = np.nanmin(seen.lag, axis=0), np.nanmax(seen.lag, axis=0)
     off = np.maximum(np.maximum(low - measured.lag, measured.lag - high), 0.0)
@@ -255,7 +255,7 @@ def _crossings(measured: _Measured, x: np.ndarray, off: np.ndarray) -> tuple[np.
     k, column = np.nonzero(off[:-1] * off[1:] < 0.0)
     passed = Brackets(column, x[k, column], x[k + 1, column], off[k, column], off[k + 1, column])
     extreme = extremes_near_zero(some.off, x, off)
-    brackets = Brackets(*map(np.concatenate, zip(passed, *_beside(extreme), strict=True)))
+    brackets = Brackets(*map(np.concatenate, zip(passed, *_brackets_around(extreme), strict=True)))
 
     def difference(beta: np.ndarray, bracket: np.ndarray) -> np.ndarray:
         one = Brackets(*(part[bracket] for part in brackets))
@@ -282,7 +282,7 @@ def _near(off: np.ndarray) -> np.ndarray:
     return (nearest <= around) & (change < 0.5 * np.pi)
 
 
-def _beside(extreme: Extremes) -> tuple[Brackets, Brackets]:
+def _brackets_around(extreme: Extremes) -> tuple[Brackets, Brackets]:
     """Brackets below and above the extremes beyond zero."""
     below = extreme.crossed & (extreme.place > extreme.low) & (extreme.at_low * extreme.value < 0.0)
     above = extreme.crossed & (extreme.place < extreme.high) & (extreme.at_high * extreme.value < 0.0)
@@ -318,7 +318,7 @@ def _none_reason(measured: _Measured, k: int, seen: _Lags) -> str:
     """State the range of lags that friction can give at a point, which excludes the measured one."""
     r, lag = float(measured.r[k]), float(np.degrees(measured.lag[k]))
     point = np.array([k])
-    off = np.degrees(_reach(measured.at(point), _Lags(seen.beta[:, point], seen.lag[:, point]))[0])
+    off = np.degrees(_distance(measured.at(point), _Lags(seen.beta[:, point], seen.lag[:, point]))[0])
     low, high = np.degrees(np.nanmin(seen.lag[:, k])), np.degrees(np.nanmax(seen.lag[:, k]))
     low, high = (min(low, lag + off), high) if lag < low else (low, max(high, lag - off))
     words = f"no friction ratio gives a lag of {lag:.4g} deg at r = {r:.4g}"

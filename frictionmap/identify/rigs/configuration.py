@@ -1,7 +1,7 @@
 """Configurations of measured data: files, known parameters, options of the fit.
 
-A kind of data is a `Kind`: its keys, and the function that fits it.  To add another, write
-one like `FREE_DECAY` in `decay` and add it to `KINDS`.
+A kind of data is a `Kind`: its keys, and the function that fits it.  To add another, write one like
+`FREE_DECAY` in `decay` and add it to `KINDS`.
 """
 
 import math
@@ -66,8 +66,7 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
     decimal = data.get("decimal")
     choices = checked_choices(data.get("columns", {}), "data.columns")
     missing = checks.choice(data.get("missing", MISSING[0]), "data.missing", MISSING)
-    values = {key: _known_number(value, key) for key, value in known.items()}
-    free = _checked_free(fit.get("free"), values, kind.parameters)
+    values, free = _held_and_free(known, fit, kind)
     source = path.parent / file
     return Rig(
         _title(tree, Path(file).stem), name, source, {}, choices,
@@ -82,8 +81,7 @@ def _joint_rig(tree: Mapping[str, object], text: str, path: Path) -> Rig:
     parts = checked_data(list(cast(list[object], tree["data"])))
     _check_keys({key: value for key, value in tree.items() if key != "data"}, JOINT_NAME, JOINT)
     known, fit = _table(tree, "known"), _table(tree, "fit")
-    values = {key: _known_number(value, key) for key, value in known.items()}
-    free = _checked_free(fit.get("free"), values, JOINT.parameters)
+    values, free = _held_and_free(known, fit, JOINT)
     files = data_paths(parts, path.parent)
     return Rig(
         _title(tree, path.stem), JOINT_NAME, files[0], {}, {}, None, {"parts": parts}, MISSING[0],
@@ -170,17 +168,17 @@ def _unknown(key: str, section: str, valid: Sequence[str], kind: str) -> InputEr
     return InputError(f"data.kind = {kind!r}: {unknown_key(key, section, valid)}")
 
 
-def _checked_free(
-    free: object, known: Mapping[str, float], parameters: Sequence[str]
-) -> tuple[str, ...] | None:
-    """Check fit.free, which must list exactly the parameters that are not known."""
-    if free is None:
-        return None
-    if not parameters:
+def _held_and_free(
+    known: Mapping[str, object], fit: Mapping[str, object], kind: Kind
+) -> tuple[dict[str, float], tuple[str, ...] | None]:
+    """Numbers of [known], and fit.free, which must list exactly the parameters that are not known."""
+    values = {key: _known_number(value, key) for key, value in known.items()}
+    free = fit.get("free")
+    if free is not None and not kind.parameters:
         raise InputError(
             "cannot use fit.free for this kind of data: all parameters not in [known] are fitted; omit it"
         )
-    return checked_free(free, known, parameters, file=True)
+    return values, checked_free(free, values, kind.parameters, file=True)
 
 
 def _known_number(value: object, key: str) -> float:

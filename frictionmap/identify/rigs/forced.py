@@ -8,6 +8,8 @@ import xarray as xr
 from ... import checks
 from ...errors import InputError, naming
 from ...files.config import read_system
+from ...files.key import Key, number
+from ...files.keys import GENERAL_KEYS, KEYS
 from ...model.system import System
 from ...units.table import COLUMN_NAMES, conversion
 from ..parameters import is_elastic
@@ -245,11 +247,21 @@ def _sets(rig: Rig, table: Table, rows: np.ndarray) -> list[object] | None:
     return [labels[row] for row in rows]
 
 
+_SPRING = Key(
+    "contact_stiffness", "stiffness of a spring in the contact over k1, if it is known; default: rigid",
+    number(above=0.0), example="3.0",
+)  # fmt: skip
+
 FORCED = Kind(
     _fit_forced,
     PARAMETERS,
     known=("stiffness",),
     data=("use", "sigma_phase_deg", "sigma_amplitude", "unreachable"),
     fit=("loss",),
-    system=True,
+    system=(*(key for key in KEYS["system"] if key not in GENERAL_KEYS), _SPRING),
+    needs_system=True,
+    examples={
+        "columns": '{ frequency = "frequency_Hz", phase_lag = "phase_lag_deg" }',
+        "free": '["beta", "f_n", "zeta"]',
+    },
 )

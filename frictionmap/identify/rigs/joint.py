@@ -17,7 +17,7 @@ from ..tables.choices import checked_choices, chosen
 from ..tables.columns import MISSING, check_increasing, pick_columns
 from ..tables.files import Table, read_table
 from ..tables.text_files import DECIMALS
-from .record import one_mass_on_base
+from .record import RECORD, one_mass_on_base
 from .rig import Kind, Rig
 
 #: Kinds of data that can be fitted together, and their columns.
@@ -126,4 +126,4 @@ def _refused(rig: Rig, table: Table) -> xr.Dataset:
     raise InputError("data must be tables [[data]] for several measurements; got one")
 
 
-JOINT = Kind(_refused, KNOWN, known=("stiffness",), fit=("loss",), system=True)
+JOINT = Kind(_refused, KNOWN, known=("stiffness",), fit=("loss",), system=RECORD.system)

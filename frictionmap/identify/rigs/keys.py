@@ -1,22 +1,19 @@
 """Keys of the configuration of a rig, by the kind of data: meanings and valid values.
 
-`Kind` lists the keys of a kind of data; this module describes them.
+`Kind` lists the keys of a kind of data; this module describes those of [data] and [fit].
 """
 
 from typing import Any
 
 from ...files.json_schema import DIALECT, described, keyed_table
-from ...files.key import Key, either, number, several, table, whole, with_unit, word
-from ...files.keys import GENERAL_KEYS, KEYS
-from ...model.system import DAMPING_REFERENCES
+from ...files.key import Key, either, number, several, table, with_unit, word
+from ...files.keys import KEYS
 from ...units.table import COLUMN_UNITS, UNITS, units_of
-from ..chain.data import MOST_MASSES
 from ..chain.sweep import COSTS
 from ..statistics.robust import LOSSES
 from ..tables.columns import MISSING
 from ..tables.headings import unit_name
 from ..tables.text_files import DECIMALS
-from ..time_series.motion import CONTACTS
 from .configuration import JOINT_NAME, KINDS
 from .joint import DATA_KEYS, JOINED, JOINT
 from .rig import NUMBERS
@@ -85,44 +82,6 @@ _FIT = (
         COSTS[0]),
 )  # fmt: skip
 
-#: Examples that differ from those above, by kind of data.
-_EXAMPLES = {
-    "forced": {
-        "columns": '{ frequency = "frequency_Hz", phase_lag = "phase_lag_deg" }',
-        "free": '["beta", "f_n", "zeta"]',
-    },
-    "record": {
-        "columns": '{ time = "time_s", base = "base_mm", x = "x_mm" }',
-        "free": '["f_n", "zeta", "x_F", "mu", "offset_x"]',
-    },
-    "sweep": {"columns": '{ frequency = "frequency_Hz", amplitude_ratio_1 = "amplitude_ratio_1" }'},
-}
-
-_CONTACT, _MASSES, *_ = KEYS["system"]
-_BASE = Key("excitation", "kind of excitation", word("base"), "base")
-_REFERENCE = Key(
-    "damping_reference", "damping acts on velocities relative to the ground, or relative to the base",
-    word(*DAMPING_REFERENCES), DAMPING_REFERENCES[0],
-)  # fmt: skip
-_SPRING = Key(
-    "contact_stiffness", "stiffness of a spring in the contact over k1, if it is known; default: rigid",
-    number(above=0.0), example="3.0",
-)  # fmt: skip
-_SYSTEMS = {
-    "forced": (*(key for key in KEYS["system"] if key not in GENERAL_KEYS), _SPRING),
-    "record": (
-        _CONTACT._replace(valid=word(*CONTACTS)),
-        _MASSES._replace(meaning="the mass in contact", valid=several({"const": 1}, maxItems=1), words="[1]"),
-        _BASE,
-        _REFERENCE,
-    ),
-    "sweep": (
-        Key("masses", "number of masses of the chain", whole(least=1, most=MOST_MASSES), example="2"),
-        _BASE,
-        _REFERENCE._replace(default=None, example='"ground"'),
-    ),
-}
-
 
 def _known(name: str) -> Key:
     """A key of [known]: in its unit, or with any other of that kind as text."""
@@ -136,7 +95,7 @@ def _known(name: str) -> Key:
 
 def _with_example(key: Key, kind: str) -> Key:
     """A key with the example for a kind of data."""
-    return key._replace(example=_EXAMPLES.get(kind, {}).get(key.name, key.example))
+    return key._replace(example=KINDS[kind].examples.get(key.name, key.example))
 
 
 def rig_keys(kind: str) -> dict[str, tuple[Key, ...]]:
@@ -148,7 +107,7 @@ def rig_keys(kind: str) -> dict[str, tuple[Key, ...]]:
     tables = {
         "": (_TITLE,),
         "data": tuple(_with_example(key, kind) for key in _DATA if key.name in data),
-        "system": _SYSTEMS.get(kind, ()),
+        "system": of.system,
         "known": tuple(_known(name) for name in known),
         "fit": tuple(_with_example(key, kind) for key in _FIT if key.name in fit),
     }
@@ -188,7 +147,7 @@ def _several_measurements() -> dict[str, Any]:
     fit = tuple(key for key in _FIT if key.name in (*JOINT.fit, "free"))
     tables = {
         "data": {"description": "Measurements fitted together.", **several(data, least=2)},
-        "system": keyed_table("system", _SYSTEMS["record"], TABLES["system"]),
+        "system": keyed_table("system", JOINT.system, TABLES["system"]),
         "known": keyed_table("known", known, TABLES["known"]),
         "fit": keyed_table("fit", fit, TABLES["fit"]),
     }
@@ -199,6 +158,5 @@ def _kind_schema(kind: str) -> dict[str, Any]:
     keys = rig_keys(kind)
     sections = {name: keyed_table(name, keys[name], TABLES[name]) for name in keys if name}
     sections["data"]["properties"]["kind"] = {"description": "what was measured", "const": kind}
-    if kind in ("forced", "sweep"):
-        return {**table({**described(keys[""]), **sections}, ("system",)), "title": kind}
-    return {**table({**described(keys[""]), **sections}), "title": kind}
+    needed = ("system",) if KINDS[kind].needs_system else ()
+    return {**table({**described(keys[""]), **sections}, needed), "title": kind}

@@ -8,6 +8,8 @@ import xarray as xr
 from ... import checks
 from ...errors import InputError, naming
 from ...files.config import unknown_key
+from ...files.key import several, word
+from ...files.keys import KEYS
 from ...model.system import DAMPING_REFERENCES
 from ...units.table import COLUMN_NAMES, conversion
 from ..signals.integration import Displacements, derivative_order, displacements
@@ -16,7 +18,7 @@ from ..tables.columns import Column, check_increasing, pick_columns
 from ..tables.files import Table
 from ..time_series.motion import CONTACTS
 from ..time_series.record import FITTABLE, record
-from .rig import Kind, Rig, check_columns, in_unit, with_remarks
+from .rig import BASE, REFERENCE, Kind, Rig, check_columns, in_unit, with_remarks
 
 _WANTED = {"time": "time", "base": "motion", "x": "motion"}
 
@@ -92,4 +94,22 @@ def one_mass_on_base(rig: Rig) -> tuple[str, str]:
     )
 
 
-RECORD = Kind(_record, FITTABLE, known=("stiffness",), data=("window",), fit=("loss",), system=True)
+_CONTACT, _MASSES, *_ = KEYS["system"]
+
+RECORD = Kind(
+    _record,
+    FITTABLE,
+    known=("stiffness",),
+    data=("window",),
+    fit=("loss",),
+    system=(
+        _CONTACT._replace(valid=word(*CONTACTS)),
+        _MASSES._replace(meaning="the mass in contact", valid=several({"const": 1}, maxItems=1), words="[1]"),
+        BASE,
+        REFERENCE,
+    ),
+    examples={
+        "columns": '{ time = "time_s", base = "base_mm", x = "x_mm" }',
+        "free": '["f_n", "zeta", "x_F", "mu", "offset_x"]',
+    },
+)

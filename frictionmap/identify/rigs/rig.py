@@ -7,6 +7,8 @@ from typing import NamedTuple
 import xarray as xr
 
 from ...files.config import unknown_key
+from ...files.key import Key, word
+from ...model.system import DAMPING_REFERENCES
 from ...units.table import conversion
 from ..chain.data import MOST_MASSES
 from ..parameters import PARAMETERS, Parameter
@@ -35,6 +37,13 @@ class Rig(NamedTuple):
     files: tuple[Path, ...]
 
 
+#: Keys of [system] of one mass, or a chain, on a shaken base.
+BASE = Key("excitation", "kind of excitation", word("base"), "base")
+REFERENCE = Key(
+    "damping_reference", "damping acts on velocities relative to the ground, or relative to the base",
+    word(*DAMPING_REFERENCES), DAMPING_REFERENCES[0],
+)  # fmt: skip
+
 #: Numbers of [known] that are no parameters: scales of the results; parameters of chains without friction.
 SCALES = {
     "base_mm": Parameter("base amplitude Y for which beta = x_F/Y is reported, mm", "1.75", "mm"),
@@ -61,14 +70,20 @@ def in_unit(known: Mapping[str, float], unit: str) -> dict[str, float]:
 
 
 class Kind(NamedTuple):
-    """A kind of data: its keys, and the function that fits it."""
+    """A kind of data: its keys, and the function that fits it.
+
+    A further kind is a file like `decay`, and an entry of `configuration.KINDS`: the schema, the manual, the
+    template and the checks of configurations follow from it.
+    """
 
     identify: Callable[[Rig, Table], xr.Dataset]
     parameters: tuple[str, ...]  # that [known] may hold and fit.free may name
     known: tuple[str, ...] = ()  # further keys of [known]
     data: tuple[str, ...] = ()  # further keys of [data]
     fit: tuple[str, ...] = ()  # further keys of [fit]
-    system: bool = False  # whether there is a table [system]
+    system: tuple[Key, ...] = ()  # of the table [system]; none: there is no such table
+    needs_system: bool = False
+    examples: Mapping[str, str] = {}  # of keys whose example is another one than for other kinds
 
 
 def check_columns(rig: Rig, valid: Sequence[str]) -> None:

@@ -8,14 +8,14 @@ import xarray as xr
 from ... import checks
 from ...errors import InputError, naming
 from ...files.config import unknown_key
+from ...files.key import Key, whole
 from ...units.table import conversion
 from ..chain.data import MOST_MASSES
-from ..chain.estimates import chain_names
 from ..chain.sweep import COSTS, DAMPINGS, sweep
 from ..statistics.robust import LOSSES
 from ..tables.columns import Column, Columns, check_positive, columns_like, pick_columns
 from ..tables.files import Table
-from .rig import Kind, Rig, check_columns, with_remarks
+from .rig import BASE, CHAIN, REFERENCE, Kind, Rig, check_columns, with_remarks
 
 SYSTEM_KEYS = ("masses", "excitation", "damping_reference")
 _MEASURES = {"amplitude_ratio": "ratio", "phase_lag": "angle"}
@@ -90,8 +90,17 @@ def _checked_system(rig: Rig) -> int:
     return checks.whole(rig.system["masses"], "system.masses", least=1, most=MOST_MASSES)
 
 
-_KNOWN = tuple(dict.fromkeys(name for n in range(1, MOST_MASSES + 1) for name in chain_names(n)))
-
 SWEEP = Kind(
-    _sweep, (), known=_KNOWN, data=("sigma_amplitude", "sigma_phase_deg"), fit=("cost", "loss"), system=True
+    _sweep,
+    (),
+    known=tuple(CHAIN),
+    data=("sigma_amplitude", "sigma_phase_deg"),
+    fit=("cost", "loss"),
+    system=(
+        Key("masses", "number of masses of the chain", whole(least=1, most=MOST_MASSES), example="2"),
+        BASE,
+        REFERENCE._replace(default=None, example='"ground"'),
+    ),
+    needs_system=True,
+    examples={"columns": '{ frequency = "frequency_Hz", amplitude_ratio_1 = "amplitude_ratio_1" }'},
 )

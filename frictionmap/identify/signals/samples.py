@@ -7,16 +7,29 @@ from ...errors import InputError
 from .turning_points import GAP
 
 
+def finite_numbers(
+    values: object, name: str, size: int | None = None, per: str = "frequency", above: float = -np.inf,
+    style: str = "",
+) -> np.ndarray:  # fmt: skip
+    """Check measured numbers: `size` of them, one `per` something, finite and > `above`.
+
+    style : of a number in a message
+    """
+    given = np.atleast_1d(checks.array(values, name))
+    if given.dtype.kind not in "iuf" or given.ndim != 1 or given.size == 0 or size not in (None, given.size):
+        wanted = "a list of numbers" if size is None else f"{size} numbers, one per {per}"
+        raise InputError(f"{name} must be {wanted}; got {checks.one_line(values)}")
+    wrong = np.flatnonzero(~(np.isfinite(given) & (given > above)))
+    if wrong.size:
+        valid = "finite" if above == -np.inf else f"finite and > {above:g}"
+        raise InputError(f"{name} must be {valid}; got {given[wrong[0]]:{style}} at index {wrong[0]}")
+    return given.astype(float)
+
+
 def checked_record(time: object, x: object, name: str = "x") -> tuple[np.ndarray, np.ndarray]:
     """Times and displacements as arrays of one length, finite, times increasing."""
     times = checks.axis(time, "time", least=-np.inf)
-    places = np.atleast_1d(checks.array(x, name))
-    if places.dtype.kind not in "iuf" or places.shape != times.shape:
-        raise InputError(f"{name} must be {times.size} numbers, one per time; got {checks.one_line(x)}")
-    wrong = np.flatnonzero(~np.isfinite(places))
-    if wrong.size:
-        raise InputError(f"{name} must be finite; got {places[wrong[0]]} at index {wrong[0]}")
-    return times, places.astype(float)
+    return times, finite_numbers(x, name, times.size, "time")
 
 
 def within(window: object, time: np.ndarray) -> np.ndarray:

@@ -14,19 +14,19 @@ from ..signals.turning_points import resolution
 from ..statistics.levels import FOUND
 from .fit import RecordFit, Samples, fit_record, places_at, samples_of
 
-#: Errors of the base's first harmonic so many times those of samples at all phases.
+#: Largest error of the base's first harmonic, over that of samples at all phases.
 _WORSE = 4.0
 
-#: A lead of so many degrees may come from higher harmonics of the base.
+#: Largest lead [degrees] that higher harmonics of the base can cause.
 _LEAD = 1.0
 
-#: Noise brings a motion to the ends of the range that is nearer to them than so many standard deviations.
+#: Noise brings a motion to the ends of the range that is nearer to them than this many standard deviations.
 _MARGIN = 3.0
 
 #: Fits after which the samples that are left out are settled, and samples that a fit needs.
 _REFITS, _FEWEST = 4, 40
 
-#: A first harmonic of the mass below so many standard errors is no motion.
+#: A first harmonic of the mass below this many standard errors is no motion.
 _MOVES = 5.0
 
 

@@ -102,7 +102,7 @@ class RecordFit(NamedTuple):
     with_law: Problem  # with mu free, if it is not known
     solution: Solution
     noise: Noise
-    model_error: float  # what is left at the harmonics over the noise beside them; 1 if chance makes it
+    model_error: float  # residuals at the harmonics over the noise beside them; 1 if due to chance
     whitening: Whitening
     by_base: np.ndarray  # J_b, shape (samples, harmonics): real parts, then imaginary ones
     motion: Motion

@@ -40,7 +40,7 @@ _NAMES = (_HOST, "localhost", "[::1]")
 #: Where links from elsewhere may lead.
 _DOORS = ("/", "/index.html")
 
-#: Kinds of answers about a view: the module, which has the `KEYS` of the query and `read`s what is asked for,
+#: Kinds of answers about a view: the module, which has the `KEYS` of the query and `read`s its values,
 #: and the function, which gives a packet, or a mapping for JSON.
 _VIEWS = {
     "motion": ("cell", "motion"),

@@ -9,11 +9,10 @@ from typing import Any
 import xarray as xr
 
 from .. import checks
-from ..datasets.questions import record
+from ..datasets.questions import record, records
 from ..errors import InputError
 from ..files.config import common_tables, design_table, further_axes, read_tree, unknown_key, within
 from ..files.variants import put_variants
-from .questions import RECORDS
 from .questions.record import Question
 from .samples import Samples
 
@@ -51,7 +50,7 @@ def load_design(path: str | Path, overrides: Sequence[str] = (), threads: int | 
     axes = further_axes(tree)
     given = design_table(tree)
     try:
-        names = tuple(one.name for one in RECORDS)
+        names = tuple(one.name for one in records())
         question = record(checks.choice(given.get("question", names[0]), "question", names))
         arguments = _with_samples(question.name, _arguments(question, given), axes)
     except InputError as error:

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .. import checks, regimes
-from ..datasets.questions import record
+from ..datasets.questions import record, records
 from ..design.band import checked_band
-from ..design.questions import AT_MOST, RECORDS
 from ..design.questions.record import Question
 from ..design.watching import watched
 from ..errors import InputError, NoSteadyState
@@ -35,7 +34,7 @@ class Goal(NamedTuple):
 
 def goals() -> tuple[Question, ...]:
     """The questions that are goals on the page."""
-    return tuple(one for one in RECORDS if one.goal is not None)
+    return tuple(one for one in records() if one.goal is not None)
 
 
 def describe_goals() -> list[dict[str, Any]]:
@@ -87,7 +86,7 @@ def answer_goal(view: View, goal: Goal, follower: Follower) -> dict[str, Any]:
     try:
         with watched(follower.watch):
             ds = _answer(question, view, goal, **limit)
-            ranges = question.goal.ranges(ds, lambda most: _answer(AT_MOST, view, goal, limit=most))
+            ranges = question.goal.ranges(ds, lambda most: _answer(record("at-most"), view, goal, limit=most))
     except NoSteadyState as error:
         raise InputError(str(error)) from None
     found = _peaks_answer(ds) if question.of_response else _boundary_answer(ds)

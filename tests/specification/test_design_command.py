@@ -11,11 +11,20 @@ from layouts import assert_inside_and_apart
 
 import frictionmap as fm
 from frictionmap.command_line.cli import main
-from frictionmap.datasets.design_labels import answer_labels
+from frictionmap.datasets.design_labels import answer_labels, beta_label
+from frictionmap.datasets.questions import records
+from frictionmap.design import questions
+from frictionmap.design.answers import answer
+from frictionmap.design.band import Band
 from frictionmap.design.configuration import load_design
+from frictionmap.design.questions.keys import BAND, MU
+from frictionmap.design.questions.record import Goal, Question
+from frictionmap.design.questions.rows import answer_rows
+from frictionmap.explorer.goal import describe_goals
 from frictionmap.files.json_schema import map_schema
 from frictionmap.files.reading import read, standard_form
 from frictionmap.files.summary import describe_file
+from frictionmap.units.scales import scales_of
 
 CONFIGS = sorted((ROOT / "configs" / "design").glob("*.toml"))
 SCHEMA = jsonschema.Draft202012Validator(map_schema())
@@ -99,6 +108,54 @@ def test_the_configuration_of_a_python_call_asks_the_same(question, tmp_path):
     path = tmp_path / "again.toml"
     path.write_text(ds.attrs["config"])
     np.testing.assert_allclose(load_design(path).ask().beta, ds.beta, rtol=1e-12)
+
+
+def test_a_question_is_its_record_alone(monkeypatch, tmp_path):
+    """With an entry among the records it has labels, a command, a file, a summary, a picture and a goal."""
+
+    def half_of_stuck(system, band, mu=1.0, *, units=None):
+        ds = fm.design.stuck(system, band, mu, units=units)
+        found = {"beta": 0.5 * ds.beta, "at_r": ds.at_r, "mu": mu, "whole": ds.beta}
+        found |= {name: ds[name].values for name in ("r_search", "beta_stick_of_r")}
+        given = Band(*band), found, {"mu": mu}
+        return answer("half-of-stuck", system, *given, units, scales_of(units, system))
+
+    own = Question(
+        name="half-of-stuck",
+        title="Half the friction that holds",
+        function=half_of_stuck,
+        needed=(BAND,),
+        optional=(MU,),
+        labels={"whole": beta_label("friction that holds")},
+        rows=(answer_rows, lambda ds: iter([("whole", f"{float(ds['whole']):.3f}")])),
+        panels=("limits",),
+        mark="half of it",
+        goal=Goal("half stuck", lambda ds, _: [(0.0, float(ds["beta"]))]),
+    )
+    monkeypatch.setattr(questions, "RECORDS", (*questions.RECORDS, own))
+    for kept in (records, answer_labels):
+        kept.cache_clear()
+    try:
+        path = tmp_path / "half.toml"
+        path.write_text(
+            '[system]\ndamping_ratios = 0.1\n[design]\nquestion = "half-of-stuck"\nband = [0.5, 1.5]\n'
+        )
+        assert main(["design", str(path), "-o", str(tmp_path / "half.nc"), "--quiet"]) == 0
+        ds = read(tmp_path / "half.nc")
+        assert ds.beta == 0.5 * fm.design.stuck(fm.System(damping_ratios=0.1), [0.5, 1.5]).beta
+        assert f"whole{' ' * 30}{ds.whole.item():.3f}" in describe_file(ds)
+        (ax,) = fm.plot_design(ds)
+        assert any("half of it" in text.get_text() for text in ax.figure.legends[0].get_texts())
+        assert {
+            "key": "half-of-stuck",
+            "label": "half stuck",
+            "response": False,
+            "limit": False,
+        } in describe_goals()
+    finally:
+        monkeypatch.undo()
+        for kept in (records, answer_labels):
+            kept.cache_clear()
 
 
 SAMPLES = {"mass_ratios[2]": [0.95, 1.0, 1.04], "stiffness_ratios[2]": [1.0, 1.05, 0.97]}

@@ -9,7 +9,7 @@ from frictionmap._kernels.compiler import entry
 def own_entry(function: Callable) -> Any:
     """Compile a function that calls kernels like the package does, again in every process.
 
-    The package identifies compiled kernels by its own source files; it would not notice a change of this
-    function.
+    The key of a function that is kept names its own file and the kernels, but not other modules whose
+    functions it may call.
     """
     return entry(function, keep=False)

@@ -90,7 +90,6 @@ def test_maps_do_not_move(tmp_path):
         ({"seconds": 0.0}, "^seconds must be .*; got 0"),
         ({"fps": 500.0}, "^fps must be .*; got 500"),
         ({"panels": 1}, "^cannot use panels with animate"),
-        ({"beta": 0.1}, "^cannot use beta with animate"),
     ],
 )
 def test_invalid_arguments_are_refused(stops, options, said):

@@ -121,7 +121,6 @@ def test_a_file_of_variants(tmp_path):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (None, "cannot read"),
         ("load_mass,damping_ratios\n1,0\n1\n", "row 3 must have 2 numbers; got 1"),
         (
             "load_mass,damping_ratios\n\n1,0,0,1\n",

@@ -109,8 +109,6 @@ def test_one_peak(measured, rig, capsys):
     [
         (["-1.0,2.0", *LINES], "column frequency_Hz, line 2 must be > 0; got -1"),
         ([*LINES[:5], "1.7,0", *LINES[6:]], "column amplitude_ratio_1, line 7 must be > 0; got 0"),
-        ([*LINES[:5], "1.7,x", *LINES[6:]], "column amplitude_ratio_1, line 7 must be a finite number"),
-        (LINES[:3], "frequency must have more values than unknowns, 3; got 3"),
     ],
 )
 def test_bad_rows(rig, capsys, lines, message):
@@ -128,7 +126,6 @@ def test_bad_rows(rig, capsys, lines, message):
             "frequency_Hz,ratio",
             "column amplitude_ratio_1 is missing; the file has",
         ),
-        ("frequency_mm,amplitude_ratio_1", "column frequency_mm: its name must end in a unit, _Hz"),
     ],
 )
 def test_bad_names(rig, capsys, head, message):

@@ -79,8 +79,6 @@ def test_windows_units_and_columns_are_those_of_each_file(rig, tmp_path):
         (('label = "decay"', 'columns = { base = "x_mm" }'), "unknown key 'data[0].columns.base'"),
         (('label = "decay"', "window = [7, 8]"), "free-decay.csv: window must hold samples"),
         (('label = "decay"', 'missing = "mend"'), "data[0].missing must be one of refuse, drop; got 'mend'"),
-        (("stiffness = 1191.0", "X0 = 1.0"), "unknown key 'known.X0'"),
-        (('excitation = "base"', 'excitation = "force"'), "system.excitation must be one of base"),
         ((ONE, ""), "two or more tables [[data]]"),
     ],
 )  # fmt: skip

@@ -281,24 +281,6 @@ def test_bad_files(tmp_path, capsys, content, word):
     assert "a program has run" not in message
 
 
-@pytest.mark.parametrize(
-    ("matrices", "words"),
-    [
-        ("missing.npz", ["system.matrices must be an .npz file", "missing.npz", "No such file or directory"]),
-        (".", ["system.matrices must be an .npz file", "directory"]),
-        ("", ["system.matrices must be the path of an .npz file", "''"]),
-        (5, ["system.matrices must be the path of an .npz file", "5"]),
-        (["a.npz"], ["system.matrices must be the path of an .npz file", "['a.npz']"]),
-        ("a\0b", ["system.matrices must be an .npz file"]),
-    ],
-)
-def test_bad_paths(tmp_path, capsys, matrices, words):
-    status, message = status_and_message(tmp_path, capsys, {"matrices": matrices})
-    assert status == 2
-    for word in words:
-        assert word in message, message
-
-
 def test_a_good_file(tmp_path, capsys, monkeypatch):
     """A path is relative to the folder of the configuration, wherever the program is run; or absolute."""
     (tmp_path / "configs").mkdir()

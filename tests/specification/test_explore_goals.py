@@ -61,7 +61,7 @@ def ends(ds):
     [
         (CHAIN, "mass-1", {"mass": 1}, [0.3, 2.2]),
         (CHAIN, "mass-1", {"mass": 1}, [0.5, 0.9]),
-        (TWO, "mass-2", {"mass": 2}, [0.4, 1.6]),
+        (TWO, "mass-2", {"mass": 2}, [0.7, 1.8]),
         (ELASTIC, "mass-1", {"mass": 1}, [0.7, 1.8]),
         (ELASTIC, "contact-1", {"quantity": "contact"}, [0.7, 1.8]),
     ],

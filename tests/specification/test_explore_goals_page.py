@@ -204,6 +204,8 @@ def test_a_refusal_is_shown_in_its_place(browser, tmp_path):
 
 def test_several_contacts_are_named(browser, tmp_path):
     with served(scene_from(tmp_path, TWO)) as server, page_of(browser, server.url, viewport=LARGE) as page:
+        page.evaluate(CHOOSE, ["goal", "stuck"])
+        page.evaluate(FILL, ["[name=goal-from]", 0.7])  # below, the search takes long
         page.evaluate(CHOOSE, ["goal", "least-peak"])
         page.evaluate(CHOOSE, ["goal-of", "contact-2"])
         page.wait_for_function(

@@ -31,6 +31,27 @@ def read_npz(path: Path) -> dict[str, Any]:
     )
 
 
+def read_npy(path: Path) -> dict[str, Any]:
+    """The one array of an .npy file, by the name of the file."""
+    try:
+        return {path.stem: np.load(path, allow_pickle=False)}
+    except _NOT_NPZ:
+        raise InputError("matrices", f": cannot read {path}: it is not an .npy file of numbers") from None
+
+
+def read_sparse_or_npz(path: Path) -> dict[str, Any]:
+    """The arrays of an .npz file, or the one sparse matrix that scipy.sparse.save_npz wrote into it."""
+    arrays = read_npz(path)
+    if not {"format", "data", "shape"} <= arrays.keys():
+        return arrays
+    from scipy.sparse import load_npz
+
+    try:
+        return {path.stem: load_npz(path)}
+    except _NOT_NPZ:
+        raise InputError("matrices", f": cannot read {path}: its sparse matrix is damaged") from None
+
+
 def read_mat_arrays(path: Path) -> dict[str, Any]:
     """The arrays of a MAT file, sparse ones among them."""
     arrays, _ = read_mat(path)

@@ -16,15 +16,15 @@ class Dofs:
     """The degrees of freedom of a structure, in the order of its rows.
 
     numbers : increasing, from 1; with gaps where rows of the file were left out
-    labels : node and degree of freedom at it, if the file has them
+    labels : node and degree of freedom at it, or names, if the file has them
     """
 
     numbers: tuple[int, ...]
-    labels: tuple[Label, ...] | None = None
+    labels: tuple[Label | str, ...] | None = None
 
     @classmethod
     @lru_cache(maxsize=16)  # a system asks for them with every call
-    def counted(cls, n: int, labels: tuple[Label, ...] | None = None) -> "Dofs":
+    def counted(cls, n: int, labels: tuple[Label | str, ...] | None = None) -> "Dofs":
         """Number the degrees of freedom from 1 to n."""
         return cls(tuple(range(1, n + 1)), labels)
 
@@ -73,7 +73,7 @@ class Dofs:
                 words = list(self._labelled)
                 raise InputError(
                     name,
-                    f"must be a number, or a label NODE.DOF of the file such as {words[0]} or "
+                    f"must be a number, or a label of the file such as {words[0]} or "
                     f"{words[-1]}; got {checks.one_line(given)}{checks.nearest(given, words)}",
                 )
             return self._labelled[given]
@@ -93,5 +93,5 @@ class Dofs:
         return f"{number} ({_written(self.labels[self.row(number)])})"
 
 
-def _written(label: Label) -> str:
-    return f"{label[0]}.{label[1]}"
+def _written(label: Label | str) -> str:
+    return label if isinstance(label, str) else f"{label[0]}.{label[1]}"

@@ -1,7 +1,8 @@
 """Matrices of a structure from one file, from one file each, or from arrays."""
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -10,7 +11,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from .abaqus import held, read_abaqus
-from .arrays import read_mat_arrays, read_npz
+from .arrays import read_mat_arrays, read_npy, read_npz, read_sparse_or_npz
 from .entries import Label, Matrix, in_one_order
 from .harwell_boeing import read_harwell_boeing
 from .market import BANNER, read_market
@@ -28,8 +29,20 @@ _SEVERAL: dict[str, Callable[[Path], dict[str, Matrix]]] = {
 }
 _BOEING = (".hb", ".rb", ".rsa", ".rua")
 
+#: What M, K and C are called in files of arrays.
+_CALLED = {
+    "M": re.compile(r"m|mass", re.IGNORECASE),
+    "K": re.compile(r"k|stiff(ness)?", re.IGNORECASE),
+    "C": re.compile(r"c|d|damp(ing)?", re.IGNORECASE),
+}
+
 #: Endings of files with one matrix, or with several by names.
-_ENDINGS = (".mtx", *_BOEING, *_SEVERAL)
+_ENDINGS = (".mtx", *_BOEING, *_SEVERAL, ".npz", ".npy", ".mat")
+
+#: Readers of files of arrays of which each is one matrix.
+_ARRAYS: dict[str, Callable[[Path], dict[str, Any]]] = {
+    ".npz": read_sparse_or_npz, ".npy": read_npy, ".mat": read_mat_arrays,
+}  # fmt: skip
 
 _ONE_EACH = '{ M = "m.mtx", K = "k.mtx" }'
 
@@ -63,16 +76,47 @@ def read_files(given: object) -> GivenMatrices:
     )
 
 
+def _by_name(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """Matrices by M, K and C, and the names of other arrays.
+
+    A matrix may have another common name, also as a field of a structure, if no array has its own one.
+
+    Raises
+    ------
+    InputError
+        M or K is missing, or several arrays may be one of the three.
+    """
+    found: dict[str, str] = {}
+    for name, pattern in _CALLED.items():
+        like = [other for other in given if pattern.fullmatch(other.rpartition(".")[2])]
+        if "M" in found:  # D may be anything, if it is not of the size of M
+            like = [other for other in like if np.shape(given[other]) == np.shape(given[found["M"]])]
+        like = [name] if name in given else like
+        if len(like) > 1:
+            raise InputError(
+                "matrices", f": {name} may be any of {', '.join(like)}; name the one that is meant {name}"
+            )
+        if like:
+            found[name] = like[0]
+    _check_there(found, list(given))
+    others = [name for name in given if name not in (*found.values(), DOFS)]
+    return {name: given[other] for name, other in found.items()}, others
+
+
+def _check_there(found: Collection[str], listed: Sequence[str]) -> None:
+    if not {"M", "K"} <= set(found):
+        raise InputError(
+            "matrices", f"must have arrays M, K and optionally C; got {', '.join(listed) or 'none'}"
+        )
+
+
 def _known_names(names: Iterable[Any]) -> None:
+    """Refuse names of a mapping that mean nothing: they are the user's own."""
     listed = [name for name in names if name != DOFS]
     for name in listed:
         if name not in NAMES:
             raise InputError("matrices", f": unknown array {name!r}; valid: {', '.join((*NAMES, DOFS))}")
-    for name in ("M", "K"):
-        if name not in listed:
-            raise InputError(
-                "matrices", f"must have arrays M, K and optionally C; got {', '.join(listed) or 'none'}"
-            )
+    _check_there(listed, listed)
 
 
 def _from_path(path: Path) -> GivenMatrices:
@@ -86,10 +130,10 @@ def _from_path(path: Path) -> GivenMatrices:
         _known_names(matrices)
         arrays, labels = in_one_order(matrices)
         return GivenMatrices(arrays, None, labels, None, path.name)
-    read = read_mat_arrays if ending == ".mat" else read_npz
-    arrays = _opened(path, read)
-    _known_names(arrays)
-    return GivenMatrices(arrays, arrays.pop(DOFS, None), None, None, path.name)
+    every = _opened(path, read_mat_arrays if ending == ".mat" else read_npz)
+    arrays, others = _by_name(every)
+    source = f"{path.name} ({', '.join(others)} not used)" if others else path.name
+    return GivenMatrices(arrays, every.get(DOFS), None, None, source)
 
 
 def _from_mapping(given: Mapping[Any, Any]) -> GivenMatrices:
@@ -121,6 +165,8 @@ def _one(path: Path, name: str) -> Matrix:
         return found[name]
     if ending in _BOEING:
         return _opened(path, read_harwell_boeing)
+    if ending in _ARRAYS:
+        return Matrix(_only(path, _opened(path, _ARRAYS[ending]), name))
     if ending == ".mtx":
         return _opened(path, lambda file: read_market(file) if _is_market(file) else read_abaqus(file))
     raise InputError(
@@ -128,9 +174,19 @@ def _one(path: Path, name: str) -> Matrix:
     )
 
 
+def _only(path: Path, arrays: Mapping[str, Any], name: str) -> Any:
+    """The array of that name in a file, or its only one."""
+    if name not in arrays and len(arrays) != 1:
+        raise InputError(
+            "matrices",
+            f": {name} must be in file {path}, or its only array; got {', '.join(arrays) or 'none'}",
+        )
+    return arrays[name] if name in arrays else next(iter(arrays.values()))
+
+
 def _is_market(path: Path) -> bool:
     with open(path, "rb") as file:
-        return file.read(len(BANNER)).decode("ascii", errors="replace") == BANNER
+        return file.read(len(BANNER)).decode("ascii", errors="replace").lower() == BANNER.lower()
 
 
 def _opened(path: Path, read: Callable[[Path], Any]) -> Any:

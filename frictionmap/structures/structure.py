@@ -50,10 +50,14 @@ def read_structure(given: object) -> Structure:
     found = read_files(given)
     arrays = {name: _square(one, name) for name, one in found.arrays.items()}
     n = arrays["M"].shape[0]
+    if n > 1 and "C" in arrays and arrays["C"].shape == (1, 1) and abs(arrays["C"]).max() == 0.0:
+        del arrays["C"]  # Nastran's matrix of what a model does not have
     for name, array in arrays.items():
         if array.shape[0] != n:
             raise InputError("matrices", f": {name} must have the shape of M, ({n}, {n}); got {array.shape}")
-    dofs, free = _dofs(found, n), np.arange(n)
+    dofs, order = _dofs(found, n)
+    arrays = {name: one[order][:, order] for name, one in arrays.items()} if order is not None else arrays
+    free = np.arange(n)
     if found.held is not None and found.held.any():
         free = np.flatnonzero(~found.held)
         if not free.size:
@@ -66,18 +70,22 @@ def read_structure(given: object) -> Structure:
     return Structure(arrays, dofs.at(free), found.source, n - free.size)
 
 
-def _dofs(found: GivenMatrices, n: int) -> Dofs:
+def _dofs(found: GivenMatrices, n: int) -> tuple[Dofs, np.ndarray | None]:
+    """The degrees of freedom, and the order of the rows in which their numbers increase, if it is another."""
     if found.dofs is None:
-        return Dofs.counted(n, found.labels)
-    numbers = np.atleast_1d(checks.array(found.dofs, "matrices: dofs"))
-    whole = (
-        numbers.dtype.kind in "iuf" and numbers.shape == (n,) and np.array_equal(numbers, np.round(numbers))
-    )
-    if not whole or (np.diff(numbers) <= 0).any() or numbers[0] < 1:
+        return Dofs.counted(n, found.labels), None
+    given = np.atleast_1d(np.squeeze(checks.array(found.dofs, "matrices: dofs")))
+    if given.dtype.kind == "U" and given.shape == (n,) and len(set(given.tolist())) == n:
+        return Dofs.counted(n, tuple(name.strip() for name in given.tolist())), None
+    whole = given.dtype.kind in "iuf" and given.shape == (n,) and np.array_equal(given, np.round(given))
+    if not whole or np.unique(given).size < n or given.min() < 1:
         raise InputError(
-            "matrices", f": dofs must be {n} increasing integers >= 1; got {checks.one_line(found.dofs)}"
+            "matrices",
+            f": dofs must be {n} different integers >= 1, or names; got {checks.one_line(found.dofs)}",
         )
-    return Dofs(tuple(int(number) for number in numbers))
+    order = np.argsort(given)
+    numbers = Dofs(tuple(int(number) for number in given[order]))
+    return numbers, None if (np.diff(order) == 1).all() else order
 
 
 def in_range(array: Any, name: str) -> bool:

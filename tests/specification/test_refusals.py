@@ -676,8 +676,8 @@ fm.System(matrices={"M": np.eye(2), "K": np.full((2, 2), np.nan)})
     matrices: K must be finite; got nan at [0, 0]
 fm.System(matrices={"M": 1j * np.eye(2), "K": np.eye(2)})
     matrices: M must be an array of real numbers; got numbers of type complex128
-fm.System(matrices={"M": np.eye(2), "K": np.eye(2), "dofs": [2, 1]})
-    matrices: dofs must be 2 increasing integers >= 1; got [2, 1]
+fm.System(matrices={"M": np.eye(2), "K": np.eye(2), "dofs": [2, 2]})
+    matrices: dofs must be 2 different integers >= 1, or names; got [2, 2]
 fm.Solver(cycles=0)
     cycles must be >= 1; got 0
 fm.Solver(outputs="regime")

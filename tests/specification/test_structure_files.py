@@ -301,7 +301,8 @@ def test_bad_files_of_harwell_boeing(text, words, tmp_path, capsys):
         ({"M": "K.mtx", "K": "L.mtx"}, ["K has labels of nodes, M has none"]),
         ("broken.mat", ["it is not a valid MAT file"]),
         ("missing.mat", ["missing.mat", "No such file"]),
-        ("more.mat", ["unknown array 'D'; valid: M, K, C, dofs"]),
+        ("more.mat", ["C may be any of D, damping; name the one that is meant C"]),
+        ({"M": "K.mtx", "K": "two.mat"}, ["K must be in file", "or its only array; got D, damping"]),
     ],
 )
 def test_bad_choices(matrices, words, tmp_path, capsys):
@@ -310,7 +311,8 @@ def test_bad_choices(matrices, words, tmp_path, capsys):
     written.abaqus(tmp_path / "L.mtx", K, LABELS)
     (tmp_path / "K.txt").write_text("1 1 1.0")
     (tmp_path / "broken.mat").write_bytes(b"no MATLAB")
-    scipy.io.savemat(tmp_path / "more.mat", {**MATRICES, "D": K})
+    scipy.io.savemat(tmp_path / "more.mat", {"M": M, "K": K, "D": C, "damping": C})
+    scipy.io.savemat(tmp_path / "two.mat", {"D": K, "damping": K})
     refused(capsys, tmp_path, matrices, words)
 
 
@@ -357,7 +359,7 @@ def test_without_the_extra(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"contact_masses": ["9.9"]}, r"label NODE.DOF of the file such as 3.1 or 17.1; got '9.9'"),
+        ({"contact_masses": ["9.9"]}, r"label of the file such as 3.1 or 17.1; got '9.9'"),
         ({"contact_masses": [17.1]}, r"contact_masses\[0\] must be a whole number, or a label in quotes"),
         ({"load_mass": "3.3"}, r"load_mass must be a number, or a label .*; got '3.3' \(did you mean"),
         ({"contact": "between-masses", "contact_masses": ["17.1", "3.1"]}, "with A < B; got"),
@@ -373,3 +375,81 @@ def test_bad_labels(settings, message, tmp_path):
 def test_labels_that_the_matrices_have_not():
     with pytest.raises(fm.InputError, match=r"contact_masses\[0\] must be a whole number; got '3.1'"):
         fm.System(matrices=MATRICES, contact_masses=["3.1"])
+
+
+def boundaries_of(matrices, **settings):
+    return fm.boundaries(fm.System(matrices=matrices, contact_masses=[1], **settings), [0.3, 0.8])
+
+
+def assert_same(found, wanted):
+    for name in ("beta_lim", "beta_stick", "natural_frequency"):
+        np.testing.assert_allclose(found[name], wanted[name], rtol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("arrays", "unused"),
+    [
+        ({**MATRICES, "Fex1": np.ones(3), "PhiT": np.eye(3)}, "Fex1, PhiT"),
+        ({"m": M, "k": K, "c": C}, ""),
+        ({"mass": M, "stiffness": K, "D": C}, ""),
+        ({**MATRICES, "D": K}, "D"),
+        ({"frame": MATRICES}, ""),
+    ],
+)
+def test_other_arrays_and_common_names(arrays, unused, tmp_path):
+    scipy.io.savemat(tmp_path / "frame.mat", arrays)
+    found = boundaries_of(tmp_path / "frame.mat")
+    assert_same(found, boundaries_of(MATRICES))
+    assert ("not used" in found.system) == bool(unused)
+    assert f"({unused} not used)" in found.system or not unused
+
+
+def test_d_of_another_size_is_no_damping(tmp_path):
+    """In a workspace of control engineers D is the feedthrough."""
+    np.savez(tmp_path / "frame.npz", M=M, K=K, D=np.zeros((1, 2)))
+    assert "(D not used)" in boundaries_of(tmp_path / "frame.npz").system
+
+
+def test_a_null_matrix_of_size_one_is_no_matrix(tmp_path):
+    """Nastran writes it for each matrix that a model does not have."""
+    writer = pytest.importorskip("pyyeti.nastran.op4")
+    writer.write(str(tmp_path / "frame.op4"), {"MAAX": M, "KAAX": K, "BAAX": np.zeros((1, 1))})
+    found = boundaries_of(tmp_path / "frame.op4", damping_ratios=0.01)
+    assert_same(found, boundaries_of({"M": M, "K": K}, damping_ratios=0.01))
+    with pytest.raises(fm.InputError, match="C must have the shape of M"):
+        boundaries_of({"M": M, "K": K, "C": np.ones((1, 1))})
+
+
+@pytest.mark.parametrize("banner", ["%%MATRIXMARKET MATRIX", "%%matrixmarket matrix"])
+def test_headers_in_capital_or_small_letters(banner, tmp_path):
+    for name, matrix in MATRICES.items():
+        written.market(tmp_path / f"{name}.mtx", matrix)
+        text = (tmp_path / f"{name}.mtx").read_text()
+        first, rest = text.split("\n", 1)
+        (tmp_path / f"{name}.mtx").write_text(f"{banner} {' '.join(first.split()[2:]).upper()}\n{rest}")
+    assert_same(boundaries_of({name: tmp_path / f"{name}.mtx" for name in MATRICES}), boundaries_of(MATRICES))
+
+
+@pytest.mark.parametrize("form", ["csr", "csc", "coo"])
+def test_one_file_each_of_scipy_and_numpy(form, tmp_path):
+    scipy.sparse.save_npz(tmp_path / "mass.npz", scipy.sparse.csr_array(M).asformat(form))
+    np.save(tmp_path / "stiffness.npy", K)
+    np.savez(tmp_path / "damping.npz", C)
+    paths = {"M": tmp_path / "mass.npz", "K": tmp_path / "stiffness.npy", "C": tmp_path / "damping.npz"}
+    assert_same(boundaries_of(paths), boundaries_of(MATRICES))
+
+
+def test_rows_in_any_order_and_by_names(tmp_path):
+    order = [2, 0, 1]
+    mixed = {name: one[order][:, order] for name, one in MATRICES.items()}
+    numbered = fm.System(matrices={**mixed, "dofs": [30, 10, 20]}, contact_masses=[20], load_mass=30)
+    named = fm.System(
+        matrices={**mixed, "dofs": ["roof", "base", "floor"]}, contact_masses=["floor"], load_mass="roof"
+    )
+    plain = fm.System(matrices=MATRICES, contact_masses=[2], load_mass=3)
+    wanted = fm.sweep(plain, [0.3, 0.8], [0.1, 0.5], outputs=["amplitude"])
+    found = fm.sweep(numbered, [0.3, 0.8], [0.1, 0.5], outputs=["amplitude"])
+    np.testing.assert_array_equal(found.dof, [10, 20, 30])
+    np.testing.assert_allclose(found.amplitude.values, wanted.amplitude.values, rtol=1e-9)
+    by_name = fm.sweep(named, [0.3, 0.8], [0.1, 0.5], outputs=["amplitude"])
+    np.testing.assert_allclose(by_name.amplitude.values, wanted.amplitude.values[..., order], rtol=1e-9)

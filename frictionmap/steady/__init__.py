@@ -3,7 +3,7 @@
 ===============  ======================================================================
 module           what is in it
 ===============  ======================================================================
-asked            a configuration in the place of a system and its axes
+configured       a configuration in the place of a system and its axes
 boundaries       `boundaries`: boundaries of the regimes over frequency, of any system
 refinement       change of the map of a reduced structure with all modes or many more
 sweep            `sweep`: maps of one system, or of many along further axes

@@ -11,7 +11,7 @@ from ..solvers.choose import engine_of
 from ..theory.refinement import boundary_check
 from ..units.axes import KINDS, ratios
 from ..units.scales import Units, scales_of
-from .asked import Configured, asked
+from .configured import Configured, system_and_axes
 
 
 def boundaries(
@@ -70,7 +70,7 @@ def boundaries(
     >>> ds.beta_stick.values
     array([[0.25, 4.  ]])
     """
-    system, r, _, mu, units, _ = asked(system, r, None, mu, units, needs=("r",))
+    system, r, _, mu, units, _ = system_and_axes(system, r, None, mu, units, needs=("r",))
     scales = scales_of(units, system)
     r = checks.axis(ratios(r, "r", KINDS["r"], scales), "r", least=0.0, most=checks.LARGEST_RATIO)
     mu = checks.axis(mu, "mu", least=1.0)

@@ -17,7 +17,7 @@ from ..single.maps import checked_axes
 from ..single.quantity_data import PARTS
 from ..solvers.choose import engine_of
 from ..units.scales import Units, scales_of
-from .asked import Configured, asked
+from .configured import Configured, system_and_axes
 from .refinement import reduction_check
 
 
@@ -101,7 +101,7 @@ def curves(
     >>> round(ds.first_harmonic_phase.item(), 6), round(ds.work_friction.item(), 6)
     (0.257396, 2.805945)
     """
-    system, r, beta, mu, units, config = asked(system, r, beta, mu, units)
+    system, r, beta, mu, units, config = system_and_axes(system, r, beta, mu, units)
     wanted = curve_settings(harmonics, quantities)
     if config is not None:
         solver = solver or config.solver

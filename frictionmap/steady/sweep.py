@@ -19,7 +19,7 @@ from ..model.variations import Variations, checked_variations
 from ..single.maps import checked_axes
 from ..solvers.choose import engine_of
 from ..units.scales import Units, scales_of
-from .asked import Configured, asked
+from .configured import Configured, system_and_axes
 from .refinement import reduction_check
 
 
@@ -88,7 +88,7 @@ def sweep(
     >>> ds.stops_per_cycle.values
     array([[[ 0.,  2., nan]]], dtype=float32)
     """
-    given = asked(system, r, beta, mu, units)
+    given = system_and_axes(system, r, beta, mu, units)
     if given.config is not None:
         solver = solver or given.config.solver
         axes = given.config.variations if axes is None else axes

@@ -36,7 +36,9 @@ def read_npy(path: Path) -> dict[str, Any]:
     try:
         return {path.stem: np.load(path, allow_pickle=False)}
     except _NOT_NPZ:
-        raise InputError("matrices", f": cannot read {path}: it is not an .npy file of numbers") from None
+        raise InputError(
+            "matrices", f": cannot read {path}: it is not an .npy file of numbers; save it with numpy.save"
+        ) from None
 
 
 def read_sparse_or_npz(path: Path) -> dict[str, Any]:
@@ -49,7 +51,9 @@ def read_sparse_or_npz(path: Path) -> dict[str, Any]:
     try:
         return {path.stem: load_npz(path)}
     except _NOT_NPZ:
-        raise InputError("matrices", f": cannot read {path}: its sparse matrix is damaged") from None
+        raise InputError(
+            "matrices", f": cannot read {path}: its sparse matrix is damaged; save it again"
+        ) from None
 
 
 def read_mat_arrays(path: Path) -> dict[str, Any]:

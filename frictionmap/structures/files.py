@@ -94,7 +94,8 @@ def _by_name(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
         like = [name] if name in given else like
         if len(like) > 1:
             raise InputError(
-                "matrices", f": {name} may be any of {', '.join(like)}; name the one that is meant {name}"
+                "matrices",
+                f": cannot use {', '.join(like)}: several may be {name}; name the one that is meant {name}",
             )
         if like:
             found[name] = like[0]

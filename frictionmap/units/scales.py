@@ -247,8 +247,9 @@ def _check_system(units: Units, system: System) -> None:
     for name in ("base_amplitude", "base_acceleration"):
         if getattr(units, name) is not None and system.excitation != "base":
             raise InputError(
-                f"cannot use units.{name}: it needs base excitation; "
-                f"for a force-excited system use units.load"
+                "cannot use",
+                f"units.{name}",
+                ": it needs base excitation; for a force-excited system use units.load",
             )
     if units.mass is not None and system.matrices is not None:
         raise InputError(

@@ -453,7 +453,7 @@ plot
 design good.toml
     the configuration must have a table [design]; got none
 design question.toml --set design.quest=stuck
-    unknown key 'design.quest' (did you mean question?); valid: question, band, response, second, ratio, mu, limit, spread, quantile, beta, r
+    unknown key 'design.quest' (did you mean question?); valid: question, band, response, mu, beta, limit, r, spread, quantile, second, ratio
 design question.toml --set design.question=best
     design.question must be one of least-peak, no-stop, stuck, at-most, margin, robust, two-forces; got 'best' (did you mean robust?)
 design good.toml --set design.question=stuck
@@ -583,7 +583,7 @@ identify sweep.toml --set 'fit.free=["gamma"]'
 identify sweep.toml --set data.sigma_phase_deg=1
     file sweep.csv, columns frequency_Hz, amplitude_ratio_1: cannot use sigma_phase without phase_lag: there are no lags; omit it
 identify sweep.toml --set known.gama=1
-    data.kind = 'sweep': unknown key 'known.gama' (did you mean gamma?); valid: f_k1m1, zeta_1, gamma, kappa, zeta_2, mass_ratio_2, mass_ratio_3, stiffness_ratio_2, stiffness_ratio_3, zeta_3, mass_ratio_4, stiffness_ratio_4, zeta_4, mass_ratio_5, stiffness_ratio_5, zeta_5
+    data.kind = 'sweep': unknown key 'known.gama' (did you mean gamma?); valid: f_k1m1, gamma, kappa, mass_ratio_2, mass_ratio_3, mass_ratio_4, mass_ratio_5, stiffness_ratio_2, stiffness_ratio_3, stiffness_ratio_4, stiffness_ratio_5, zeta_1, zeta_2, zeta_3, zeta_4, zeta_5
 identify record.toml --set system.contact_masses=[2]
     system.contact_masses must be [1] for a record of one mass; got [2]
 identify record.toml --set system.zeta=0.1
@@ -647,7 +647,7 @@ identify sweep.toml --set data.sigma_amplitude=0
 identify sweep.toml --set 'data.window=[1, 2]'
     data.kind = 'sweep': unknown key 'data.window' (did you mean kind?); valid: kind, file, columns, decimal, missing, sigma_amplitude, sigma_phase_deg
 identify sweep.toml --set known.mu=1
-    data.kind = 'sweep': unknown key 'known.mu'; valid: f_k1m1, zeta_1, gamma, kappa, zeta_2, mass_ratio_2, mass_ratio_3, stiffness_ratio_2, stiffness_ratio_3, zeta_3, mass_ratio_4, stiffness_ratio_4, zeta_4, mass_ratio_5, stiffness_ratio_5, zeta_5
+    data.kind = 'sweep': unknown key 'known.mu'; valid: f_k1m1, gamma, kappa, mass_ratio_2, mass_ratio_3, mass_ratio_4, mass_ratio_5, stiffness_ratio_2, stiffness_ratio_3, stiffness_ratio_4, stiffness_ratio_5, zeta_1, zeta_2, zeta_3, zeta_4, zeta_5
 identify record.toml --set system.contact=between-masses
     system.contact must be one of fixed-wall, joined-base-wall; got 'between-masses'
 identify record.toml --set system.excitation=force

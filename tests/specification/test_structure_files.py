@@ -301,7 +301,7 @@ def test_bad_files_of_harwell_boeing(text, words, tmp_path, capsys):
         ({"M": "K.mtx", "K": "L.mtx"}, ["K has labels of nodes, M has none"]),
         ("broken.mat", ["it is not a valid MAT file"]),
         ("missing.mat", ["missing.mat", "No such file"]),
-        ("more.mat", ["C may be any of D, damping; name the one that is meant C"]),
+        ("more.mat", ["cannot use D, damping: several may be C; name the one that is meant C"]),
         ({"M": "K.mtx", "K": "two.mat"}, ["K must be in file", "or its only array; got D, damping"]),
     ],
 )

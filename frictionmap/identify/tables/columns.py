@@ -185,11 +185,11 @@ def _unit(table: Table, column: str, role: str, valid: Sequence[str]) -> str:
         return unit
     what = repr(unit) if unit else "none"
     calibration = "scale = 1.0, " if unit in ELECTRICAL else ""
-    endings = f"its name must end in a unit, {', '.join(valid)}"
+    where, endings = f"file {table.file}, column {column}", ", ".join(valid)
     line = f"or write {_line(role, column, calibration + _unit_key(valid[0]))} below [data]"
     if calibration:
         line += f", with the {unit_name(valid[0][1:])} per {unit} of the sensor as scale"
-    raise InputError(f"file {table.file}, column {column}: {endings}; got {what} ({line})")
+    raise InputError(f"{where}: its name must end in a unit, {endings}; got {what} ({line})")
 
 
 def _named_like(

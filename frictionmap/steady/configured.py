@@ -46,7 +46,7 @@ class Asked(NamedTuple):
     config: Configured | None
 
 
-def asked(
+def system_and_axes(
     system: System | Configured, r: ArrayLike | None, beta: ArrayLike | None, mu: ArrayLike | None,
     units: Units | None, needs: tuple[str, ...] = ("r", "beta"),
 ) -> Asked:  # fmt: skip

@@ -56,8 +56,8 @@ def test_intervals_with_estimated_weights_hold_the_truth(scale):
             left = freedom_by_kind(best, np.ones(4, dtype=bool), KIND)
             size *= np.sqrt(np.bincount(KIND, best.residual**2) / left)
         task = problem_of(best.slopes, data * weight)
-        allowance = estimated_weights(task, best, KIND, np.array([True, True]))
-        for found, allowed in ((errors(task, best), False), (errors(task, best, allowance=allowance), True)):
+        scaling = estimated_weights(task, best, KIND, np.array([True, True]))
+        for found, allowed in ((errors(task, best), False), (errors(task, best, scaling=scaling), True)):
             held = int(((found.lower <= 0.0) & (found.upper >= 0.0)).sum())
             inside, plain = inside + held * allowed, plain + held * (not allowed)
     assert 0.935 < inside / (4 * trials) < 0.965

@@ -267,7 +267,7 @@ def test_ranges_are_the_same_in_both(key, value, tmp_path_factory):
 def test_keys_of_rigs_are_those_of_their_kinds(kind):
     tables = {name: [key.name for key in keys] for name, keys in rig_keys(kind).items()}
     of = KINDS[kind]
-    assert set(tables["data"]) == {"kind", "file", "columns", "missing", *of.data}
+    assert set(tables["data"]) == {"kind", "file", "columns", "decimal", "missing", *of.data}
     assert set(tables["known"]) == {*of.parameters, *of.known}
     assert set(tables.get("fit", ())) == {*of.fit, *(["free"] if of.parameters else [])}
     systems = {

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..statistics.estimates import QUANTITIES, estimates, flags
-from ..statistics.least_squares import Errors, Solution, half_widths
+from ..statistics.least_squares import Errors, Solution, correlation_of, half_widths
 from .fit import Measured
 from .two_masses import frequencies, ratio_slopes
 
@@ -70,8 +70,6 @@ def _transformed(
     """
     covariance = rows @ (found.correlation * np.outer(found.standard_error, found.standard_error)) @ rows.T
     deviation = np.sqrt(np.diag(covariance))
-    scale = np.where(deviation > 0.0, deviation, 1.0)
-    correlation = np.where(np.eye(natural.size, dtype=bool), 1.0, covariance / np.outer(scale, scale))
     own = (rows == 1.0) & (np.count_nonzero(rows, axis=1) == 1)[:, np.newaxis]
     place, is_own = own.argmax(axis=1), own.any(axis=1)
     # of what several decide, the least known
@@ -84,7 +82,7 @@ def _transformed(
     natural_solution = best._replace(values=natural, at_bound=is_own & best.at_bound[place])
     deviation = np.where(logarithmic, natural, 1.0) * deviation
     return natural_solution, found._replace(
-        standard_error=deviation, lower=lower, upper=upper, correlation=correlation
+        standard_error=deviation, lower=lower, upper=upper, correlation=correlation_of(covariance)
     )
 
 

@@ -14,9 +14,8 @@ from ...model.modes import wrapped
 from ..signals.turning_points import turns
 from ..statistics.least_squares import Problem, Solution, minimise
 from ..statistics.robust import soften
-from .inverse import chain_of
+from .inverse import chain_of, other_sides
 from .response import modes, response_and_slopes
-from .sides import other_sides
 
 #: Mass and stiffness ratios are within this factor of one, as are frequencies relative to the peaks.
 _RATIO_RANGE = 1e3

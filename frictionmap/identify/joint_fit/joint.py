@@ -14,14 +14,13 @@ from ...units.table import checked_unit
 from ..decay.part import decay_part
 from ..parameters import ALIKE, checked_known, unit_of
 from ..part import SHARED, Part
-from ..statistics.cautions import interval_warnings
 from ..statistics.estimates import estimates, friction_force, number, usable_errors, verdict
 from ..statistics.least_squares import Errors, Solution, errors, growth
 from ..statistics.robust import LOSSES
 from ..time_series.labels import one_mass
 from ..time_series.motion import CONTACTS
 from ..time_series.part import record_part
-from ..time_series.static_friction import FITTED, IDLE, ONE, mu_interval, per_square
+from ..time_series.static_friction import FITTED, IDLE, mu_interval, mu_warnings, per_square
 from ..time_series.verdict import friction_found, limit_of_correlation, listed
 from .fit import F_N, MU, ZETA, JointFit, fit_jointly, places_of
 
@@ -281,12 +280,7 @@ def _fit_warnings(fit: JointFit, found: Errors) -> list[str]:
     ]
     if fit.static == IDLE:
         words.append("mu cannot be determined, as no record sticks: it is held at 1")
-    if fit.static == ONE:
-        words.append(
-            "mu = 1 explains the data as well as a larger mu does: the other estimates are those for mu = 1, "
-            "and their intervals allow for the whole interval of mu"
-        )
-    words += interval_warnings("mu", 1.0, not fit.with_mu.free[MU] or bool(found.lower[MU] > 1.0))
+    words += mu_warnings(fit.static, not fit.with_mu.free[MU] or bool(found.lower[MU] > 1.0))
     names = _names(fit)
     bound = [names[k] for k in np.flatnonzero(fit.solution.at_bound) if names[k]]
     return words + ([f"{listed(bound)} at the bound: the interval is one-sided"] if bound else [])

@@ -189,6 +189,13 @@ def _with_excess(
     return grown, np.sqrt(np.divide(np.diag(grown), plain, out=np.ones(plain.size), where=plain > 0.0))
 
 
+def correlation_of(covariance: np.ndarray) -> np.ndarray:
+    """Correlation of what has a covariance; 0 with what is held, whose variance is 0."""
+    deviation = np.sqrt(np.diag(covariance))
+    scale = np.where(deviation > 0.0, deviation, 1.0)
+    return np.where(np.eye(deviation.size, dtype=bool), 1.0, covariance / np.outer(scale, scale))
+
+
 def half_widths(freedom: np.ndarray) -> np.ndarray:
     """Half the widths of 95 % intervals over the standard errors, by the degrees of freedom of each."""
     return np.asarray(stdtrit(freedom, _TWO_SIDED))

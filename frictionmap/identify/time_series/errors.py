@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..signals.phasors import Phasors, first_harmonics
-from ..statistics.least_squares import Errors, errors, growth, two_sided
+from ..statistics.least_squares import Errors, correlation_of, errors, growth, two_sided
 from .fit import RecordFit, base_errors
 from .motion import F_N, GAIN, LAW, MU, OFFSET, PARAMETERS, X_F, ZETA
 from .static_friction import IDLE, ONE, highest, mu_interval, per_square
@@ -63,8 +63,6 @@ def record_errors(fit: RecordFit, phasors: Phasors, time: np.ndarray, used: np.n
         linear.transfer[MU] *= per_square(float(fit.values[MU]), of_law)
     covariance = linear.estimate_covariance
     deviation = np.sqrt(np.diag(covariance))
-    scale = np.where(deviation > 0.0, deviation, 1.0)
-    correlation = np.where(np.eye(deviation.size, dtype=bool), 1.0, covariance / np.outer(scale, scale))
     reach = two_sided(fit.noise.freedom)
     values = np.concatenate((fit.values, derived_values(fit, phasors)))
     lower, upper = values - reach * deviation, values + reach * deviation
@@ -87,7 +85,7 @@ def record_errors(fit: RecordFit, phasors: Phasors, time: np.ndarray, used: np.n
         _allow_for_both_units(lower, upper, values, abs(phasors.values[0, 1]))
     lower[_POSITIVE] = np.maximum(lower[_POSITIVE], 0.0)
     return found._replace(
-        standard_error=deviation, lower=lower, upper=upper, correlation=correlation,
+        standard_error=deviation, lower=lower, upper=upper, correlation=correlation_of(covariance),
         inflation=float(growth(fit.problem, fit.solution, fit.noise)[:OFFSET].max()),
     )  # fmt: skip
 

@@ -13,7 +13,7 @@ from ...units.table import checked_unit
 from ..explanations import Outcome
 from ..parameters import ALIKE, CONTACT_STIFFNESS, checked_free, checked_known, is_elastic, refuse_mu
 from ..spring import spring_in_newtons, spring_warnings
-from ..statistics.cautions import bound_warnings, correlation_warnings, interval_warnings
+from ..statistics.cautions import bound_warnings, correlation_warnings
 from ..statistics.estimates import estimates, friction_force, number, usable_errors, verdict
 from ..statistics.least_squares import Errors, undetermined
 from ..statistics.levels import MISFIT, MISFIT_SHARE
@@ -25,7 +25,7 @@ from .estimates import model_estimates, tolerances, units, with_others
 from .fit import RecordFit
 from .labels import data_warnings, one_mass, record_variables
 from .motion import CONTACTS, GAIN, LAW, MU, OFFSET, PARAMETERS, X_F, ZETA, outer
-from .static_friction import IDLE, ONE
+from .static_friction import IDLE, mu_warnings
 from .verdict import listed, record_verdict
 
 #: What can be fitted or held.
@@ -296,13 +296,8 @@ def _fit_warnings(fit: RecordFit, found: Errors) -> list[str]:
     names = fit.mass.names
     if fit.mass.elastic:
         words += spring_warnings(float(found.lower[LAW]), float(found.upper[LAW])) if fit.free[LAW] else []
-    elif fit.static == ONE:
-        words.append(
-            "mu = 1 explains the data as well as a larger mu does: the other estimates are those for mu = 1, "
-            "and their intervals allow for the whole interval of mu"
-        )
-    if not fit.mass.elastic:
-        words += interval_warnings("mu", 1.0, not fit.free[MU] or bool(found.lower[MU] > 1.0))
+    else:
+        words += mu_warnings(fit.static, not fit.free[MU] or bool(found.lower[MU] > 1.0))
     if fit.model_error > 1.0:
         words.append(
             f"the model does not explain the record down to its noise: at the harmonics of the base "

@@ -5,6 +5,7 @@ What the data see is (mu - 1)^2, see `motion.inner`.
 
 import numpy as np
 
+from ..statistics.cautions import interval_warnings
 from ..statistics.least_squares import (
     Noise,
     Problem,
@@ -70,6 +71,18 @@ def mu_interval(
         return *interval(square, two_sided(noise.freedom) * error), still
     mu = 1.0 + float(np.sqrt(max(square, 0.0)))
     return mu, mu, still
+
+
+def mu_warnings(static: int, usable: bool) -> list[str]:
+    """Warn of an interval of mu that begins at 1.
+
+    usable : whether the standard error of mu has a meaning
+    """
+    words = [
+        "mu = 1 explains the data as well as a larger mu does: the other estimates are those for mu = 1, "
+        "and their intervals allow for the whole interval of mu"
+    ]
+    return (words if static == ONE else []) + interval_warnings("mu", 1.0, usable)
 
 
 def interval(square: float, reach: float) -> tuple[float, float]:

@@ -13,7 +13,7 @@ from ..model.settings import Start
 from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
 from .drawing import drawing_curves, drawing_of
-from .lines import line_values
+from .lines import values_of_lines
 from .numbers import numbers_of
 from .quantities import counted_of
 from .queries import PAGE, Query, needed, number
@@ -59,11 +59,11 @@ def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
     view.check(r)
     follower.watch()
     header: dict[str, Any] = {"r": r, "beta": beta, "others": view.engine.compares_starts}
-    limits = line_values(view, np.array([r]))
     try:
-        values, comment = view.engine.traced(r, beta, view.mu, view.solver, _SAMPLES)
+        values, at_r, comment = view.engine.traced(r, beta, view.mu, view.solver, _SAMPLES)
     except NoSteadyState as error:
         return {**header, "class": UNRESOLVED, "none": str(error)}, {}
+    limits = values_of_lines(view, at_r)
     entries, numbers = numbers_of(view, values, limits)
     k, several = view.shown, view.system.contact_system.count > 1
     header |= {

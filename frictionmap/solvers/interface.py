@@ -37,10 +37,12 @@ class Motion(NamedTuple):
 
     values : numbers (), of masses (n,) and contacts (N,), over time (n, tau) and (N, tau), harmonics
         (..., harmonic, part)
+    limits : the boundaries at its frequency
     comment : which part of an irregular motion it is; empty of others
     """
 
     values: dict[str, np.ndarray]
+    limits: Limits
     comment: str
 
 
@@ -160,7 +162,8 @@ class Engine(ABC):
             for name, one in ds.variables.items()
         }
         values.setdefault("contact_regime", values["regime"][np.newaxis])  # of the only one
-        return Motion(values, ds.attrs.get("comment", ""))
+        limits = self.limits(np.array([r]), np.array([mu]))
+        return Motion(values, limits, ds.attrs.get("comment", ""))
 
     @property
     @abstractmethod

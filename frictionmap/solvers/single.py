@@ -120,7 +120,7 @@ class SingleEngine(Engine):
         values = traces | found.cycle | {name: np.array(value) for name, value in found.summary.items()}
         values["contact_regime"] = values["regime"]
         of_contact = {name: value[np.newaxis] for name, value in values.items() if name in OF_CONTACTS}
-        return Motion(values | of_contact, found.comment)
+        return Motion(values | of_contact, _limits(found.curves), found.comment)
 
     @property
     def sizes(self) -> tuple[str, ...]:

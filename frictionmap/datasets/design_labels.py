@@ -24,6 +24,11 @@ def beta_label(meaning: str, dims: tuple[str, ...] = (), *, nan: bool = False, i
     return Label(np.float64, meaning, dims, least=0.0, nan=nan, inf=inf)
 
 
+def size_label(meaning: str, dims: tuple[str, ...] = (), *, nan: bool = False, units: str = "1") -> Label:
+    """A response or a force."""
+    return Label(np.float64, meaning, dims, least=0.0, nan=nan, inf=True, units=units)
+
+
 def r_label(meaning: str, dims: tuple[str, ...] = (), *, nan: bool = False) -> Label:
     """A frequency ratio."""
     return Label(np.float64, meaning, dims, least=0.0, most=checks.LARGEST_RATIO, nan=nan)
@@ -31,9 +36,7 @@ def r_label(meaning: str, dims: tuple[str, ...] = (), *, nan: bool = False) -> L
 
 #: Axes and variables that several questions have; those of one are in its record.
 _COMMON = {
-    "peak": Label(
-        np.float64, f"peaks at the answer, from the highest down: {RESPONSE}", _PEAK, least=0.0, inf=True
-    ),
+    "peak": size_label(f"peaks at the answer, from the highest down: {RESPONSE}", _PEAK),
     "beta_search": beta_label(f"{FRICTION}, searched", _SEARCH, inf=False),
     "r_search": r_label("frequency ratios, searched", _OVER_R),
     "offset": Label(np.float64, "relative change of the friction", ("offset",), least=-1.0),
@@ -52,21 +55,14 @@ _COMMON = {
     "peak_stops": Label(
         np.float64, "stops per cycle at the peak, the most of all contacts", _PEAK, least=0.0, nan=True
     ),
-    "peak_of_beta": Label(np.float64, RESPONSE, _SEARCH, least=0.0, inf=True),
+    "peak_of_beta": size_label(RESPONSE, _SEARCH),
     "unknown_of_beta": Label(
         np.int32,
         "cells of the band without a periodic steady state; there the largest response is infinite",
         _SEARCH,
         least=0,
     ),
-    "peak_at_offset": Label(
-        np.float64,
-        f"{RESPONSE}, with other friction than the answer",
-        ("offset",),
-        least=0.0,
-        inf=True,
-        nan=True,
-    ),
+    "peak_at_offset": size_label(f"{RESPONSE}, with other friction than the answer", ("offset",), nan=True),
     "second_beta": beta_label("friction ratio of the second-best minimum within 5 %", nan=True),
     "second_peak": Label(np.float64, f"{RESPONSE}, at the second-best minimum", (), least=0.0, nan=True),
     "beta_no_stop": beta_label(
@@ -87,20 +83,13 @@ _COMMON = {
     "beta_lim_of_r": beta_label("boundary of motion without stops", _OVER_R, nan=True),
     "beta_stick_of_r": beta_label("boundary to permanent sticking", _OVER_R),
     "beta_stuck_of_r": beta_label("friction ratio from which every motion comes to rest", _OVER_R),
-    "response_of_r": Label(
-        np.float64,
-        "response over P/k1 (Y), or of a force over P",
-        ("curve", "r_search"),
-        least=0.0,
-        inf=True,
-        nan=True,
+    "response_of_r": size_label(
+        "response over P/k1 (Y), or of a force over P", ("curve", "r_search"), nan=True
     ),
-    "friction_force": Label(
-        np.float64, "kinetic friction force: the answer", (), least=0.0, inf=True, units="N"
-    ),
+    "friction_force": size_label("kinetic friction force: the answer", units="N"),
     "peak_frequency": Label(np.float64, "frequency of the peak", _PEAK, least=0.0, units="Hz"),
-    "peak_m": Label(np.float64, "peaks at the answer", _PEAK, least=0.0, inf=True, units="m"),
-    "peak_N": Label(np.float64, "peaks at the answer", _PEAK, least=0.0, inf=True, units="N"),
+    "peak_m": size_label("peaks at the answer", _PEAK, units="m"),
+    "peak_N": size_label("peaks at the answer", _PEAK, units="N"),
 }
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import checks
-from ...datasets.design_labels import beta_label
+from ...datasets.design_labels import beta_label, size_label
 from ...datasets.labels import Label
 from ...files.key import Key, either, number, with_unit
 from ...model.system import System
@@ -110,21 +110,11 @@ AT_MOST = Question(
         "interval": Label(np.int64, "interval, counted from 1", ("interval",), least=1),
         "interval_begin": beta_label("friction ratio at which an allowed range begins", ("interval",)),
         "interval_end": beta_label("friction ratio at which an allowed range ends", ("interval",)),
-        "interval_begin_N": Label(
-            np.float64,
-            "friction force at which an allowed range begins",
-            ("interval",),
-            least=0.0,
-            inf=True,
-            units="N",
+        "interval_begin_N": size_label(
+            "friction force at which an allowed range begins", ("interval",), units="N"
         ),
-        "interval_end_N": Label(
-            np.float64,
-            "friction force at which an allowed range ends",
-            ("interval",),
-            least=0.0,
-            inf=True,
-            units="N",
+        "interval_end_N": size_label(
+            "friction force at which an allowed range ends", ("interval",), units="N"
         ),
     },
     rows=(answer_rows, peak_rows, change_rows, _range_rows),

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...datasets.design_labels import RESPONSE
+from ...datasets.design_labels import RESPONSE, size_label
 from ...datasets.labels import Label
 from ...errors import InputError
 from ...files.key import Key, number
@@ -88,9 +88,7 @@ ROBUST = Question(
             most=1.0,
         ),
         "sample": Label(np.int64, "sample of the structure, counted from 1", ("sample",), least=1),
-        "peak_of_sample": Label(
-            np.float64, f"{RESPONSE}, of each sample at the answer", ("sample",), least=0.0, inf=True
-        ),
+        "peak_of_sample": size_label(f"{RESPONSE}, of each sample at the answer", ("sample",)),
     },
     rows=(answer_rows, peak_rows, _sample_rows, change_rows),
     panels=("performance", "responses"),

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...datasets.design_labels import FRICTION, RESPONSE, beta_label
+from ...datasets.design_labels import FRICTION, RESPONSE, beta_label, size_label
 from ...datasets.labels import Label
 from ...files.key import Key, number, several, whole
 from ...model.system import System
@@ -108,13 +108,7 @@ TWO_FORCES = Question(
         "ratio_search": Label(
             np.float64, "ratio of the second contact, searched", ("ratio_search",), least=0.0
         ),
-        "peak_of_ratio": Label(
-            np.float64,
-            f"{RESPONSE}, least over the friction at each ratio",
-            ("ratio_search",),
-            least=0.0,
-            inf=True,
-        ),
+        "peak_of_ratio": size_label(f"{RESPONSE}, least over the friction at each ratio", ("ratio_search",)),
         "beta_of_ratio": beta_label(f"{FRICTION} with the least peak at each ratio", ("ratio_search",)),
     },
     rows=(answer_rows, _ratio_rows, peak_rows, change_rows),

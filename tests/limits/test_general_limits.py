@@ -12,6 +12,9 @@ import frictionmap as fm
 from frictionmap.design.responses import Response, Responses
 from frictionmap.general.problem import problem_of
 from frictionmap.general.starts import initial_states
+from frictionmap.model.general import in_general_form
+from frictionmap.solvers.choose import engine_of
+from frictionmap.solvers.general import GeneralEngine
 
 OUTPUTS = [
     "regime",
@@ -386,3 +389,27 @@ def test_a_mu_of_the_contacts_themselves_is_a_mu_of_the_grid(own, mu):
     assert len(Responses(by_contact, response, 1.0, None)._solvers) == 2
     equal = fm.System(contacts=[replace(one, mu=1.0) for one in contacts], **shared)
     assert len(Responses(equal, response, mu, None)._solvers) == 1
+
+
+@pytest.mark.parametrize(("contact", "masses", "more"), ONE_CONTACT)
+def test_both_engines_give_the_same_arrays(contact, masses, more):
+    """Shapes, names and values, on which the page relies for every system."""
+    system = fm.System(contact, masses, **more)
+    plain, general = engine_of(system), GeneralEngine(in_general_form(system))
+    axes = {"mu": np.array([1.0]), "r": np.array([0.43, 0.9]), "beta": np.array([0.1, 0.4])}
+    names, solver = ("stops_per_cycle", "contact_amplitude", "amplitude"), fm.Solver()
+    (one, lines), (other, further) = (
+        engine.cells(axes, names, solver, None, None, None) for engine in (plain, general)
+    )
+    for ours, theirs in zip(lines[:3], further[:3], strict=True):
+        np.testing.assert_allclose(ours, theirs, rtol=1e-9)
+    moving = one["regime"] > 0  # where it rests depends on what is followed
+    for name in (*names, "regime", "contact_regime"):
+        assert one[name].shape == other[name].shape
+        np.testing.assert_allclose(one[name][moving], other[name][moving], rtol=1e-9, atol=1e-9)
+    own, twin = (engine.traced(0.43, 0.1, 1.0, solver, 50) for engine in (plain, general))
+    for name in ("tau", "x", "v", "z", "friction", "contact_harmonic", "friction_harmonic", "work_friction"):
+        assert own.values[name].shape == twin.values[name].shape
+        np.testing.assert_allclose(own.values[name], twin.values[name], atol=1e-6)
+    assert own.values["contact_regime"] == twin.values["contact_regime"]
+    np.testing.assert_allclose(own.limits.beta_lim, twin.limits.beta_lim, rtol=1e-9)

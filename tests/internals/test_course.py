@@ -49,37 +49,24 @@ def settle(problem, friction, start, workspace):
     row, motion, memory, kept = workspace.row, workspace.motion, workspace.memory, workspace.record
     set_row(problem, 0, row)
     steady.from_rest(problem, row, friction, start, motion, memory, kept, record.NOTHING)
-    return steady.find(
-        problem, row, friction, 2000.0, 1e-12, motion, memory, workspace.ring, kept, workspace.course
-    )
+    return steady.find(problem, friction, 2000.0, 1e-12, workspace)
 
 
 @own_entry
 def measure(problem, friction, halves, workspace):
     """Follow one period of the motion into the counters and the record."""
     problem, friction, workspace = packed(problem), packed(friction), packed(workspace)
-    memory, kept = workspace.memory, workspace.record
-    steady.measure(
-        problem,
-        workspace.row,
-        friction,
-        halves,
-        workspace.motion,
-        memory,
-        kept,
-        workspace.ring,
-        record.RANGES,
-    )
+    steady.measure(problem, friction, halves, workspace, record.RANGES)
 
 
 @own_entry
 def average(problem, friction, periods, workspace):
     """Follow twice as many periods again, and average over the window; return its half periods."""
     problem, friction, workspace = packed(problem), packed(friction), packed(workspace)
-    motion, memory, kept, course = workspace.motion, workspace.memory, workspace.record, workspace.course
+    memory, kept, course = workspace.memory, workspace.record, workspace.course
     begin_course(periods, memory, kept, course)
     for cycle in range(periods, 3 * periods):
-        follow_cycle(problem, workspace.row, friction, cycle, motion, memory, workspace.ring, kept, course)
+        follow_cycle(problem, friction, cycle, workspace)
     set_window(3 * periods, course)
     return take_window(course, memory.counts, kept)
 

@@ -65,23 +65,10 @@ def _solve_cells(problem, forces, starts, workspace, friction, found):
         for j in range(contacts):
             friction.kinetic[j] = friction.static[j] = forces[k, j]
         from_rest(problem, row, friction, starts[k], motion, memory, record, NOTHING)
-        steady = find(
-            problem,
-            row,
-            friction,
-            _CYCLES,
-            _TOLERANCE,
-            motion,
-            memory,
-            workspace.ring,
-            record,
-            workspace.course,
-        )
+        steady = find(problem, friction, _CYCLES, _TOLERANCE, workspace)
         if steady.status != REPEATS:
             continue
-        halves, multiplier = measure(
-            problem, row, friction, steady.halves, motion, memory, record, workspace.ring, RANGES
-        )
+        halves, multiplier = measure(problem, friction, steady.halves, workspace, RANGES)
         if halves == 0:
             continue
         found.multiplier[k] = multiplier ** (1.0 / steady_period(steady.halves))

@@ -65,7 +65,7 @@ def _does_the_same(memory, ring):
 
 
 @kernel
-def _approaches(problem, row, friction, halves, contraction, motion, memory, ring, record):
+def _approaches(problem, friction, halves, contraction, workspace):
     """Whether the motion comes nearer to the steady state in `memory.start`, which stays there.
 
     The motion is followed until most of the distance is gone, or for as long as that should take.  In every
@@ -73,15 +73,17 @@ def _approaches(problem, row, friction, halves, contraction, motion, memory, rin
 
     Parameters
     ----------
-    problem, row, friction : Problem, Row, Friction
+    problem, friction : Problem, Friction
     halves : half periods after which the steady state returns
     contraction : largest modulus of its multipliers over these
-    motion, memory, ring, record : Motion, Return, Ring, Record; `memory.counts` are those of the steady state
+    workspace : Workspace; `memory.counts` are those of the steady state
 
     Returns
     -------
     (approaches, cycles) : periods followed
     """
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+    ring = workspace.ring
     put_orbit(memory, ring)
     go_back(memory, ring, 0)
     size = motion_size(problem, row, memory)
@@ -107,28 +109,27 @@ def _approaches(problem, row, friction, halves, contraction, motion, memory, rin
 
 
 @kernel
-def try_return(problem, row, friction, halves, tolerance, motion, memory, ring, record):
+def try_return(problem, friction, halves, tolerance, workspace):
     """Find the steady state that the motion goes to, from a return after some half periods.
 
     Parameters
     ----------
-    problem, row, friction : Problem, Row, Friction
+    problem, friction : Problem, Friction
     halves : number of half periods
     tolerance : see `find`
-    motion, memory, ring, record : Motion, Return, Ring, Record
+    workspace : Workspace
 
     Returns
     -------
     Steady : REPEATS or NO_REPEAT
     """
-    base = base_halves(problem)
-    status, cycles = find_rest(problem, row, friction, halves, tolerance, motion, memory, record, ring)
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+    ring, base = workspace.ring, base_halves(problem)
+    status, cycles = find_rest(problem, friction, halves, tolerance, workspace)
     if status == REPEATS:
         contraction = largest_multiplier(problem, row, halves, _STABLE_PRECISION, motion, memory)
         if _heads_for(problem, row, halves, contraction, memory, ring):
-            approaches, more = _approaches(
-                problem, row, friction, halves, contraction, motion, memory, ring, record
-            )
+            approaches, more = _approaches(problem, friction, halves, contraction, workspace)
             cycles += more
             if approaches:
                 least, more = least_period(problem, row, friction, halves, base, motion, memory, record)

@@ -96,20 +96,22 @@ def _raise(log, slot, column, value):
 
 
 @kernel
-def follow_cycle(problem, row, friction, followed, motion, memory, ring, record, course):
+def follow_cycle(problem, friction, followed, workspace):
     """Follow the motion from `memory.start` for a period of the load, and log it.
 
     Parameters
     ----------
-    problem, row, friction : Problem, Row, Friction
+    problem, friction : Problem, Friction
     followed : periods of the load before this one
-    motion, memory, ring, record, course : Motion, Return, Ring, Record, Course; `memory.start` is replaced
-        by the state at the end, and the states at the section are kept
+    workspace : Workspace; `memory.start` is replaced by the state at the end, and the states at the section
+        are kept
 
     Returns
     -------
     int : code of `follow`
     """
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+    ring, course = workspace.ring, workspace.course
     counts = course.counts
     put_state(memory.start, memory.senses, motion)
     begin_cycle(record)

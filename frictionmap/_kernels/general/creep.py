@@ -142,18 +142,15 @@ def _release_overloaded(problem, row, friction, motion, memory, record, kept):
 
 
 @kernel
-def _newton_later(problem, row, friction, halves, tolerance, motion, memory, record, ring):
+def _newton_later(problem, friction, halves, tolerance, workspace):
     """Newton's method from the state in `memory.start`, or where it fails from those that follow.
-
-    Parameters
-    ----------
-    problem, row, friction, halves, tolerance, motion, memory, record, ring : see `_settle`
 
     Returns
     -------
     (status, cycles) : see `newton`
     """
-    cycles = 0.0
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+    ring, cycles = workspace.ring, 0.0
     for count in range(1, _ATTEMPTS + 1):
         copy_motion(memory.start, memory.senses, ring.orbit, ring.orbit_senses)
         status, more = newton(problem, row, friction, halves, tolerance, motion, memory, record)
@@ -170,7 +167,7 @@ def _newton_later(problem, row, friction, halves, tolerance, motion, memory, rec
 
 
 @kernel
-def _settle(problem, row, friction, halves, tolerance, motion, memory, record, ring):
+def _settle(problem, friction, halves, tolerance, workspace):
     """Find a steady state by Newton's method; contacts that drift are held, those that cannot rest let go.
 
     A contact that was let go, and drifts again, rests: its load exceeds its limit by so little that it slides
@@ -178,26 +175,24 @@ def _settle(problem, row, friction, halves, tolerance, motion, memory, record, r
 
     Parameters
     ----------
-    problem, row, friction : Problem, Row, Friction; contacts that rest keep a friction without limit
+    problem, friction : Problem, Friction; contacts that rest keep a friction without limit
     halves : half periods after which it returns
     tolerance : see `steady.find`
-    motion, memory, record, ring : Motion, Return, Record, Ring, whose friction is that before, see `_keep`
+    workspace : Workspace; the friction in its ring is that before, see `_keep`
 
     Returns
     -------
     (status, cycles) : REPEATS or NO_REPEAT; periods followed
     """
-    cycles = 0.0
-    held = 0
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+    ring, cycles, held = workspace.ring, 0.0, 0
     for j in range(memory.senses.size):
         held += friction.kinetic[j] == WITHOUT_LIMIT
     for turn in range(3 * memory.senses.size + 1):  # each contact is held, let go, and held again
         if turn == 0 and held == 0:
             status, more = newton(problem, row, friction, halves, tolerance, motion, memory, record)
         else:
-            status, more = _newton_later(
-                problem, row, friction, halves, tolerance, motion, memory, record, ring
-            )
+            status, more = _newton_later(problem, friction, halves, tolerance, workspace)
         cycles += more
         if status == DRIFTS:
             more_held = _hold(problem, friction, 0.0, memory, ring.friction)
@@ -218,45 +213,43 @@ def _settle(problem, row, friction, halves, tolerance, motion, memory, record, r
 
 
 @kernel
-def find_rest(problem, row, friction, halves, tolerance, motion, memory, record, ring):
-    """Find the steady state by Newton's method, and the contacts that rest in it.
-
-    Parameters
-    ----------
-    problem, row, friction, halves, tolerance, motion, memory, record, ring : see `_settle`
+def find_rest(problem, friction, halves, tolerance, workspace):
+    """Find the steady state by Newton's method, and the contacts that rest in it; see `_settle`.
 
     Returns
     -------
     (status, cycles) : REPEATS or NO_REPEAT, then with the friction as it was; periods followed
     """
-    _keep(friction, ring.friction)
-    status, cycles = _settle(problem, row, friction, halves, tolerance, motion, memory, record, ring)
+    kept = workspace.ring.friction
+    _keep(friction, kept)
+    status, cycles = _settle(problem, friction, halves, tolerance, workspace)
     if status != REPEATS:
-        restore_friction(friction, ring.friction)
+        restore_friction(friction, kept)
     return status, cycles
 
 
 @kernel
-def find_held(problem, row, friction, halves, tolerance, motion, memory, record, ring):
+def find_held(problem, friction, halves, tolerance, workspace):
     """Find the steady state from the one of the structure that is held where it creeps; see `find_rest`.
 
     Parameters
     ----------
-    problem, row, friction, halves, tolerance, motion, memory, record : see `find_rest`
-    ring : Ring; the motion is that of its last state
+    problem, friction, halves, tolerance : see `find_rest`
+    workspace : Workspace; the motion is that of the last state in its ring
 
     Returns
     -------
     (status, cycles) : see `find_rest`
     """
-    cycles = 0.0
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+    ring, cycles = workspace.ring, 0.0
     for share in _HELD:
         go_back(memory, ring, 0)
         code = go_round(problem, row, friction, 2, motion, memory, record, False)
         cycles += 1.0
         _keep(friction, ring.friction)
         if code == FOLLOWED and _hold(problem, friction, share, memory, ring.friction) > 0:
-            status, more = _settle(problem, row, friction, halves, tolerance, motion, memory, record, ring)
+            status, more = _settle(problem, friction, halves, tolerance, workspace)
             cycles += more
             if status == REPEATS:
                 return status, cycles

@@ -36,23 +36,10 @@ def _fill(problem, i, contact, lines, values, state, limits, workspace, friction
             friction.static[j] = force
         if not near:
             from_rest(problem, row, friction, state, motion, memory, record, NOTHING)
-        found = find(
-            problem,
-            row,
-            friction,
-            cycles,
-            tolerance,
-            motion,
-            memory,
-            workspace.ring,
-            record,
-            workspace.course,
-        )
+        found = find(problem, friction, cycles, tolerance, workspace)
         halves = 0
         if found.status == REPEATS:
-            halves, _ = measure(
-                problem, row, friction, found.halves, motion, memory, record, workspace.ring, FORCES
-            )
+            halves, _ = measure(problem, friction, found.halves, workspace, FORCES)
         near = halves > 0
         out[k] = math.nan
         if near:

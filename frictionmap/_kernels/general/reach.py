@@ -229,16 +229,8 @@ def _begin_motion(problem, i, search, beta, walk, a):
     if walk.motions.kind[a] == SLIDES or walk.motions.kind[a] == HAS_STOPS:
         begin_from(walk.motions, a, beta, workspace.memory)
     else:
-        from_rest(
-            problem,
-            workspace.row,
-            walk.friction,
-            search.starts[i],
-            workspace.motion,
-            workspace.memory,
-            workspace.record,
-            NOTHING,
-        )
+        motion, memory, state = workspace.motion, workspace.memory, search.starts[i]
+        from_rest(problem, workspace.row, walk.friction, state, motion, memory, workspace.record, NOTHING)
 
 
 @kernel
@@ -260,10 +252,7 @@ def _find(problem, i, search, beta, tolerance, walk, a):
     found = _solve(problem, tolerance, walk)
     if not found and motions.kind[a] != SLIDES:
         _begin_motion(problem, i, search, motions.beta[a], walk, a)
-        followed = find(
-            problem, workspace.row, walk.friction, search.cycles, search.tolerance, workspace.motion,
-            workspace.memory, workspace.ring, workspace.record, workspace.course,
-        )  # fmt: skip
+        followed = find(problem, walk.friction, search.cycles, search.tolerance, workspace)
         found = followed.status == REPEATS
     # a larger motion hardly differs from one period to the next, but is no steady state
     return found and motion_size(problem, workspace.row, workspace.memory) <= search.tallest[i]

@@ -109,49 +109,38 @@ def make_workspace(problem, masses, most):
 
 
 @kernel
-def _go_on(problem, row, friction, base, motion, memory, ring, record):
-    """Follow the motion from one return to the section to the next; return the code of `follow`.
-
-    Parameters
-    ----------
-    problem, row, friction : Problem, Row, Friction
-    base : half periods of the return map
-    motion, memory, ring, record : Motion, Return, Ring, Record
-    """
-    code = go_round(problem, row, friction, base, motion, memory, record, False)
+def _go_on(problem, friction, halves, workspace):
+    """Follow the motion from one return to the section to the next; return the code of `follow`."""
+    memory = workspace.memory
+    code = go_round(
+        problem, workspace.row, friction, halves, workspace.motion, memory, workspace.record, False
+    )
     take_end(memory)
-    keep(memory, ring)
+    keep(memory, workspace.ring)
     return code
 
 
 @kernel
-def _find_unique(problem, row, friction, cycles, tolerance, motion, memory, ring, record):
-    """Find the steady state where every motion reaches it; see `find`.
-
-    Parameters
-    ----------
-    problem, row, friction, cycles, tolerance, motion, memory, ring, record : see `find`
-    """
-    base = base_halves(problem)
+def _find_unique(problem, friction, cycles, tolerance, workspace):
+    """Find the steady state where every motion reaches it; see `find`."""
+    memory, ring, base = workspace.memory, workspace.ring, base_halves(problem)
     spent = 0.0
     wait = 0
     pause = 0
     while spent < cycles:
         if wait == 0:
-            status, more = find_rest(problem, row, friction, base, tolerance, motion, memory, record, ring)
+            status, more = find_rest(problem, friction, base, tolerance, workspace)
             spent += more
             pause += 1
             wait = pause
             if status != REPEATS and pause in (_CREEPS, 2 * _CREEPS):
-                status, more = find_held(
-                    problem, row, friction, base, tolerance, motion, memory, record, ring
-                )
+                status, more = find_held(problem, friction, base, tolerance, workspace)
                 spent += more
             if status == REPEATS:
-                end_creep(problem, friction, memory, record, ring)
+                end_creep(problem, friction, memory, workspace.record, ring)
                 return Steady(REPEATS, base, spent)
             go_back(memory, ring, 0)
-        code = _go_on(problem, row, friction, base, motion, memory, ring, record)
+        code = _go_on(problem, friction, base, workspace)
         spent += 0.5 * base
         if code != FOLLOWED:
             return Steady(1 + code, 0, spent)
@@ -173,17 +162,14 @@ def _averages(followed, at_last, memory, record, course):
 
 
 @kernel
-def _find_from_start(problem, row, friction, cycles, tolerance, motion, memory, ring, record, course):
+def _find_from_start(problem, friction, cycles, tolerance, workspace):
     """Find the steady state where it depends on the start; see `find`.
 
     The motion is compared with its last states at every return, and at times, ever more rarely, with those
     of up to 256 periods ago.
-
-    Parameters
-    ----------
-    problem, row, friction, cycles, tolerance, motion, memory, ring, record, course : see `find`
     """
-    base = base_halves(problem)
+    row, memory, ring = workspace.row, workspace.memory, workspace.ring
+    record, course, base = workspace.record, workspace.course, base_halves(problem)
     enough = enough_cycles(cycles)
     logged_from = 2 * int(min(enough, cycles) / 3.0)
     search = first_search()
@@ -199,7 +185,7 @@ def _find_from_start(problem, row, friction, cycles, tolerance, motion, memory, 
             longer = find_long_recurrence(row, memory, ring, base)
             tried = longer if longer > 0 else tried
         if tried > 0:
-            found = try_return(problem, row, friction, tried, tolerance, motion, memory, ring, record)
+            found = try_return(problem, friction, tried, tolerance, workspace)
             spent += found.cycles
             if found.status == REPEATS:
                 return Steady(REPEATS, found.halves, spent + 0.5 * halves)
@@ -212,10 +198,10 @@ def _find_from_start(problem, row, friction, cycles, tolerance, motion, memory, 
         if halves == logged_from:
             begin_course(halves // 2, memory, record, course)
         if halves >= logged_from:
-            code = follow_cycle(problem, row, friction, halves // 2, motion, memory, ring, record, course)
+            code = follow_cycle(problem, friction, halves // 2, workspace)
             halves += 2
         else:
-            code = _go_on(problem, row, friction, base, motion, memory, ring, record)
+            code = _go_on(problem, friction, base, workspace)
             halves += base
         if code != FOLLOWED:
             return Steady(1 + code, 0, spent + 0.5 * halves)
@@ -225,40 +211,41 @@ def _find_from_start(problem, row, friction, cycles, tolerance, motion, memory, 
 
 
 @kernel
-def find(problem, row, friction, cycles, tolerance, motion, memory, ring, record, course):
-    """Find the steady state that the motion from `memory.start` reaches.
+def find(problem, friction, cycles, tolerance, workspace):
+    """Find the steady state that the motion from `workspace.memory.start` reaches.
 
     Parameters
     ----------
-    problem, row, friction : Problem, Row, Friction
+    problem, friction : Problem, Friction
     cycles : periods to follow at most
     tolerance : largest change of the state over a return, over its size
-    motion, memory, ring, record, course : Motion, Return, Ring, Record, Course; `memory.start` is replaced
-        by the steady state; where averages are found, they are in `memory.counts` and `record`
+    workspace : Workspace after `begin_row`; `memory.start` is replaced by the steady state; where averages
+        are found, they are in `memory.counts` and `record`
 
     Returns
     -------
     Steady
     """
-    ring.count[0] = 0
-    keep(memory, ring)
+    workspace.ring.count[0] = 0
+    keep(workspace.memory, workspace.ring)
     if is_unique(friction):
-        return _find_unique(problem, row, friction, cycles, tolerance, motion, memory, ring, record)
-    return _find_from_start(problem, row, friction, cycles, tolerance, motion, memory, ring, record, course)
+        return _find_unique(problem, friction, cycles, tolerance, workspace)
+    return _find_from_start(problem, friction, cycles, tolerance, workspace)
 
 
 @kernel
-def _refine(problem, row, friction, halves, count, motion, memory, record, ring):
+def _refine(problem, friction, halves, count, workspace):
     """Bring the state in `memory.start` nearer to the one that returns.
 
     That is done by Newton's method; where a contact at the edge of its limits misleads it, by the motion.
 
     Parameters
     ----------
-    problem, row, friction, halves, motion, memory, record, ring : see `measure`
+    problem, friction, halves, workspace : see `measure`
     count : returns that the motion is followed for
     """
-    status, _ = find_rest(problem, row, friction, halves, MEASURED, motion, memory, record, ring)
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+    status, _ = find_rest(problem, friction, halves, MEASURED, workspace)
     if status != REPEATS:
         for _ in range(count):
             if go_round(problem, row, friction, halves, motion, memory, record, False) == FOLLOWED:
@@ -266,16 +253,16 @@ def _refine(problem, row, friction, halves, count, motion, memory, record, ring)
 
 
 @kernel
-def measure(problem, row, friction, halves, motion, memory, record, ring, what):
-    """Follow the steady state once more, into `record` and `memory.counts`.
+def measure(problem, friction, halves, workspace, what):
+    """Follow the steady state in `memory.start` once more, into `record` and `memory.counts`.
 
     Where it does not quite return, or a contact only touches its limits, it is solved once more.
 
     Parameters
     ----------
-    problem, row, friction : Problem, Row, Friction
+    problem, friction : Problem, Friction
     halves : half periods after which it returns
-    motion, memory, record, ring : Motion, Return, Record, Ring
+    workspace : Workspace
     what : NOTHING, RANGES, STEPS or FORCES, what is kept; STEPS and FORCES are kept of whole periods
 
     Returns
@@ -283,6 +270,7 @@ def measure(problem, row, friction, halves, motion, memory, record, ring, what):
     (followed, multiplier) : half periods followed, 0 where the motion could not be; the largest modulus of
         the multipliers over the steady period, NaN where NOTHING is kept
     """
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     both = halves if halves % 2 == 0 or what == NOTHING or what == RANGES else 2 * halves
     multiplier = math.nan
     found = False
@@ -302,7 +290,7 @@ def measure(problem, row, friction, halves, motion, memory, record, ring, what):
         found = returns and not any_drifts(problem, memory.counts, both)
         if found:
             break
-        _refine(problem, row, friction, halves, count, motion, memory, record, ring)
+        _refine(problem, friction, halves, count, workspace)
     if not found:
         return 0, math.nan
     join_slips(record, both)
@@ -408,14 +396,12 @@ def _locate(problem, friction, cycles, tolerance, workspace, by_tables):
     problem, friction, cycles, tolerance, workspace : see `solve_from`
     by_tables : whether the tables of one mass can be used
     """
-    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+    row, memory, record = workspace.row, workspace.memory, workspace.record
     if by_tables:
         located, spent, _ = solve_single(problem, row, workspace.single, friction.kinetic[0], memory, record)
         if located:
             return Steady(REPEATS, base_halves(problem), spent)
-    return find(
-        problem, row, friction, cycles, tolerance, motion, memory, workspace.ring, record, workspace.course
-    )
+    return find(problem, friction, cycles, tolerance, workspace)
 
 
 @kernel
@@ -461,9 +447,7 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
             found = Steady(REPEATS, found.halves, found.cycles + spent)
     if found.status != REPEATS:
         return found, 0, math.nan
-    halves, multiplier = measure(
-        problem, row, friction, found.halves, workspace.motion, memory, record, workspace.ring, what
-    )
+    halves, multiplier = measure(problem, friction, found.halves, workspace, what)
     if halves == 0:
         found = Steady(CHATTERS, 0, found.cycles)
     return found, halves, multiplier

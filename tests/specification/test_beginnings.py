@@ -10,6 +10,7 @@ import jsonschema
 import numpy as np
 import pytest
 import shtab
+import xarray as xr
 from conftest import ROOT
 from hypothesis import given
 from hypothesis import strategies as st
@@ -30,12 +31,16 @@ from frictionmap.command_line.completion import completion
 from frictionmap.datasets.labels import CELL_VARIABLES
 from frictionmap.examples import starting_rig
 from frictionmap.files.json_schema import map_schema
+from frictionmap.files.key import Key, whole
 from frictionmap.files.keys import GENERAL_KEYS, KEYS
 from frictionmap.files.template import starting_configuration
-from frictionmap.identify.rigs.configuration import KINDS, load_rig
-from frictionmap.identify.rigs.keys import rig_keys, rig_schema
+from frictionmap.identify.parameters import Parameter
+from frictionmap.identify.rigs.configuration import KINDS, identify, load_rig
+from frictionmap.identify.rigs.keys import rig_keys, rig_schema, rig_settings
 from frictionmap.identify.rigs.record import SYSTEM_KEYS as RECORD_SYSTEM
+from frictionmap.identify.rigs.rig import LOSS, Kind
 from frictionmap.identify.rigs.sweep import SYSTEM_KEYS as SWEEP_SYSTEM
+from frictionmap.identify.tables.columns import pick_columns
 from frictionmap.model import system
 from frictionmap.pictures.curves.figure import CURVE_QUANTITIES
 from frictionmap.pictures.options import FigureOptions
@@ -267,16 +272,42 @@ def test_ranges_are_the_same_in_both(key, value, tmp_path_factory):
 def test_keys_of_rigs_are_those_of_their_kinds(kind):
     tables = {name: [key.name for key in keys] for name, keys in rig_keys(kind).items()}
     of = KINDS[kind]
-    assert set(tables["data"]) == {"kind", "file", "columns", "decimal", "missing", *of.data}
+    data = ("kind", "file", "columns", "decimal", "missing", *(key.name for key in of.data))
+    assert tables["data"] == [*data]
     assert set(tables["known"]) == {*of.parameters, *of.known}
-    assert set(tables.get("fit", ())) == {*of.fit, *(["free"] if of.parameters else [])}
+    assert set(tables.get("fit", ())) == {*(key.name for key in of.fit), *(["free"] if of.parameters else [])}
     systems = {
         "record": RECORD_SYSTEM,
         "sweep": SWEEP_SYSTEM,
         "forced": [*(key.name for key in KEYS["system"] if key not in GENERAL_KEYS), "contact_stiffness"],
     }
     assert set(tables.get("system", ())) == set(systems.get(kind, ()))
-    assert of.system == ("system" in tables)
+    assert bool(of.system) == ("system" in tables)
+
+
+def test_a_kind_of_data_is_added_by_its_record_alone(tmp_path, monkeypatch):
+    """Schema, keys, settings, units and checks of its configurations follow from the record."""
+
+    def fit(rig, table):
+        columns = pick_columns(table, {"force": "force"}, rig.columns).columns
+        scale = rig.known["friction"] * rig.data["turns"]
+        return xr.Dataset({"total": scale * columns["force"].values.sum()}, attrs={"warnings": ""})
+
+    friction = Parameter("friction force, N", "2.0", "N", {"least": 0.0})
+    turns = Key("turns", "turns to be fitted", whole(least=1), example="3")
+    monkeypatch.setitem(KINDS, "loop", Kind(fit, {"friction": friction}, data=(turns,), fit=(LOSS,)))
+    (tmp_path / "loop.csv").write_text("time_s,force_N\n0.0,1.0\n0.1,2.5\n")
+    text = '[data]\nkind = "loop"\nfile = "loop.csv"\nturns = 2\n[known]\nfriction = "2 kN"\n'
+    (tmp_path / "loop.toml").write_text(text)
+    assert identify(load_rig(tmp_path / "loop.toml"))["total"].item() == 2000.0 * 2 * 3.5
+    assert jsonschema.Draft202012Validator(rig_schema()).is_valid(tomllib.loads(text))
+    assert not jsonschema.Draft202012Validator(rig_schema()).is_valid(
+        tomllib.loads(text.replace("= 2", "= 0"))
+    )
+    assert {"data.turns", "known.friction", "fit.loss"} <= set(rig_settings())
+    (tmp_path / "loop.toml").write_text(text.replace("turns", "turn"))
+    with pytest.raises(InputError, match=r"unknown key 'data\.turn' \(did you mean turns\?\)"):
+        load_rig(tmp_path / "loop.toml")
 
 
 @pytest.mark.parametrize(

@@ -584,6 +584,8 @@ identify sweep.toml --set data.sigma_phase_deg=1
     file sweep.csv, columns frequency_Hz, amplitude_ratio_1: cannot use sigma_phase without phase_lag: there are no lags; omit it
 identify sweep.toml --set known.gama=1
     data.kind = 'sweep': unknown key 'known.gama' (did you mean gamma?); valid: f_k1m1, gamma, kappa, mass_ratio_2, mass_ratio_3, mass_ratio_4, mass_ratio_5, stiffness_ratio_2, stiffness_ratio_3, stiffness_ratio_4, stiffness_ratio_5, zeta_1, zeta_2, zeta_3, zeta_4, zeta_5
+identify record.toml --set known.gain=0
+    file ..., columns ...: known.gain must be > 0; got 0.0
 identify record.toml --set system.contact_masses=[2]
     system.contact_masses must be [1] for a record of one mass; got [2]
 identify record.toml --set system.zeta=0.1

@@ -14,6 +14,7 @@ import xarray as xr
 from ... import checks
 from ...errors import InputError
 from ...files.config import read_tree, unknown_key
+from ...files.key import Key
 from ...units.axes import rounded
 from ...units.quantities import quantity
 from ...units.table import UNITS
@@ -26,7 +27,7 @@ from .decay import FREE_DECAY
 from .forced import FORCED
 from .joint import JOINT, checked_data, data_paths, fit_together
 from .record import RECORD
-from .rig import NUMBERS, Kind, Rig
+from .rig import Kind, Rig
 from .sweep import SWEEP
 
 #: Description of every kind of data.
@@ -149,9 +150,9 @@ def _checked_kind(tree: Mapping[str, object], data: Mapping[str, object]) -> str
 def _check_keys(tree: Mapping[str, object], name: str, kind: Kind) -> None:
     """Refuse unknown keys of the kind; [system] is checked as in maps, where it is used."""
     sections = {
-        "data": ("kind", "file", "columns", "decimal", "missing", *kind.data),
-        "known": (*kind.parameters, *kind.known),
-        "fit": ("free", *kind.fit),
+        "data": ("kind", "file", "columns", "decimal", "missing", *(key.name for key in kind.data)),
+        "known": tuple(kind.numbers),
+        "fit": ("free", *(key.name for key in kind.fit)),
     }
     valid = ("title", *sections, *(("system",) if kind.system else ()))
     for key in tree:
@@ -172,18 +173,18 @@ def _held_and_free(
     known: Mapping[str, object], fit: Mapping[str, object], kind: Kind
 ) -> tuple[dict[str, float], tuple[str, ...] | None]:
     """Numbers of [known], and fit.free, which must list exactly the parameters that are not known."""
-    values = {key: _known_number(value, key) for key, value in known.items()}
+    values = {key: _known_number(value, key, kind) for key, value in known.items()}
     free = fit.get("free")
     if free is not None and not kind.parameters:
         raise InputError(
             "cannot use fit.free for this kind of data: all parameters not in [known] are fitted; omit it"
         )
-    return values, checked_free(free, values, kind.parameters, file=True)
+    return values, checked_free(free, values, tuple(kind.parameters), file=True)
 
 
-def _known_number(value: object, key: str) -> float:
+def _known_number(value: object, key: str, kind: Kind) -> float:
     """Convert a number of [known], with a unit to that of the key."""
-    unit = NUMBERS[key].unit if key in NUMBERS else ""
+    unit = kind.numbers[key].unit
     if unit and isinstance(value, str):
         found = quantity(value, f"known.{key}", UNITS[unit].measures)
         number = rounded(found.value / UNITS[unit].size)
@@ -193,5 +194,5 @@ def _known_number(value: object, key: str) -> float:
     return checks.number(value, f"known.{key}")
 
 
-def _chosen(table: Mapping[str, object], keys: Sequence[str]) -> dict[str, object]:
-    return {key: table[key] for key in keys if key in table}
+def _chosen(table: Mapping[str, object], keys: Sequence[Key]) -> dict[str, object]:
+    return {key.name: table[key.name] for key in keys if key.name in table}

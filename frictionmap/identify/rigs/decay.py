@@ -5,12 +5,24 @@ from typing import Any
 import xarray as xr
 
 from ...errors import naming
+from ...files.key import Key
 from ...units.table import conversion
 from ..decay.free_decay import free_decay
 from ..decay.motion import PARAMETERS
 from ..tables.columns import check_increasing, pick_columns
 from ..tables.files import Table
-from .rig import Kind, Rig, check_columns, in_unit, with_remarks
+from .rig import (
+    BASE_AMPLITUDE,
+    LOSS,
+    STIFFNESS,
+    WINDOW,
+    Kind,
+    Rig,
+    check_columns,
+    in_unit,
+    named,
+    with_remarks,
+)
 
 
 def _free_decay(rig: Rig, table: Table) -> xr.Dataset:
@@ -29,6 +41,9 @@ def _free_decay(rig: Rig, table: Table) -> xr.Dataset:
     return with_remarks(ds, table, picked)
 
 
+_DRIFT = Key("drift", "whether to fit a linear drift of the zero", {"type": "boolean"}, False,
+             words="true or false")  # fmt: skip
+
 FREE_DECAY = Kind(
-    _free_decay, PARAMETERS, known=("base_mm", "stiffness"), data=("window",), fit=("drift", "loss")
+    _free_decay, named(*PARAMETERS), known=BASE_AMPLITUDE | STIFFNESS, data=(WINDOW,), fit=(_DRIFT, LOSS)
 )

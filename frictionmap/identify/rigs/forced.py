@@ -8,7 +8,7 @@ import xarray as xr
 from ... import checks
 from ...errors import InputError, naming
 from ...files.config import read_system
-from ...files.key import Key, number
+from ...files.key import Key, number, several, word
 from ...files.keys import GENERAL_KEYS, KEYS
 from ...model.system import System
 from ...units.table import COLUMN_NAMES, conversion
@@ -19,7 +19,7 @@ from ..signals.integration import amplitude_factors, derivative_order
 from ..statistics.robust import LOSSES
 from ..tables.columns import Column, Columns, check_positive, columns_like, pick_columns
 from ..tables.files import Table
-from .rig import Kind, Rig, check_columns, with_remarks
+from .rig import LOSS, SIGMA_AMPLITUDE, SIGMA_PHASE, STIFFNESS, Kind, Rig, check_columns, named, with_remarks
 
 #: What may be fitted: the columns, and what they measure.
 _USE = {"phase": ("phase_lag", "angle"), "amplitude": ("amplitude_ratio", "ratio")}
@@ -252,12 +252,17 @@ _SPRING = Key(
     number(above=0.0), example="3.0",
 )  # fmt: skip
 
+_USED = Key("use", "quantities to fit; default: all available", several(word(*_USE)),
+            example='["phase", "amplitude"]')  # fmt: skip
+_UNREACHABLE = Key("unreachable", "lags that no friction ratio gives: refuse or ignore them",
+                   word("refuse", "drop"), "refuse")  # fmt: skip
+
 FORCED = Kind(
     _fit_forced,
-    PARAMETERS,
-    known=("stiffness",),
-    data=("use", "sigma_phase_deg", "sigma_amplitude", "unreachable"),
-    fit=("loss",),
+    named(*PARAMETERS),
+    known=STIFFNESS,
+    data=(_USED, SIGMA_PHASE, SIGMA_AMPLITUDE, _UNREACHABLE),
+    fit=(LOSS,),
     system=(*(key for key in KEYS["system"] if key not in GENERAL_KEYS), _SPRING),
     needs_system=True,
     examples={

@@ -18,7 +18,7 @@ from ..tables.columns import MISSING, check_increasing, pick_columns
 from ..tables.files import Table, read_table
 from ..tables.text_files import DECIMALS
 from .record import RECORD, one_mass_on_base
-from .rig import Kind, Rig
+from .rig import LOSS, STIFFNESS, Kind, Rig, named
 
 #: Kinds of data that can be fitted together, and their columns.
 JOINED = {
@@ -126,4 +126,4 @@ def _refused(rig: Rig, table: Table) -> xr.Dataset:
     raise InputError("data must be tables [[data]] for several measurements; got one")
 
 
-JOINT = Kind(_refused, KNOWN, known=("stiffness",), fit=("loss",), system=RECORD.system)
+JOINT = Kind(_refused, named(*KNOWN), known=STIFFNESS, fit=(LOSS,), system=RECORD.system)

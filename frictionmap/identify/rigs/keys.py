@@ -1,6 +1,6 @@
 """Keys of the configuration of a rig, by the kind of data: meanings and valid values.
 
-`Kind` lists the keys of a kind of data; this module describes those of [data] and [fit].
+`Kind` has the keys of a kind of data; here are those of all kinds.
 """
 
 from typing import Any
@@ -9,14 +9,13 @@ from ...files.json_schema import DIALECT, described, keyed_table
 from ...files.key import Key, either, number, several, table, with_unit, word
 from ...files.keys import KEYS
 from ...units.table import COLUMN_UNITS, UNITS, units_of
-from ..chain.sweep import COSTS
-from ..statistics.robust import LOSSES
+from ..parameters import Parameter
 from ..tables.columns import MISSING
 from ..tables.headings import unit_name
 from ..tables.text_files import DECIMALS
 from .configuration import JOINT_NAME, KINDS
 from .joint import DATA_KEYS, JOINED, JOINT
-from .rig import NUMBERS
+from .rig import WINDOW
 
 #: Descriptions of the tables.
 TABLES = {
@@ -25,9 +24,6 @@ TABLES = {
     "known": "Known parameters, which are not fitted, and scales of the results, in Hz, mm, s, N/m.",
     "fit": "Options of the fit.",
 }
-
-_POSITIVE = number(above=0.0)
-_TIMES = several(number(), 2, maxItems=2)
 
 _TITLE = KEYS[""][0]._replace(meaning="title of plots; default: name of the data file")
 
@@ -55,37 +51,23 @@ _DATA = (
         example='","'),
     Key("missing", "rows without a number: refuse, or ignore up to 1 % of the rows", word(*MISSING),
         MISSING[0]),
-    Key("window", "time window to be fitted, s", _TIMES, example="[0.5, 4.0]", words="[begin, end]"),
-    Key("use", "quantities to fit; default: all available", several(word("phase", "amplitude")),
-        example='["phase", "amplitude"]'),
-    Key("sigma_phase_deg", "standard error of phase lags; default: from the residuals", _POSITIVE,
-        example="1.0"),
-    Key("sigma_amplitude", "relative standard error of amplitudes; default: from the residuals", _POSITIVE,
-        example="0.02"),
-    Key("unreachable", "lags that no friction ratio gives: refuse or ignore them", word("refuse", "drop"),
-        "refuse"),
 )  # fmt: skip
 
 #: Key of each of several measurements.
 _LABEL = Key("label", "name in the results; default: its number", {"type": "string", "minLength": 1},
              example='"10 N"')  # fmt: skip
 
-_FIT = (
-    Key("free", "parameters to fit; must be all that are not in [known], which is the default; "
-        "contact_stiffness, delay and gain may be named, or are fitted where one of them explains the data",
-        several({"type": "string"}), example='["f_n", "zeta", "x_F", "X0", "t0", "centre"]',
-        words="a list of parameters"),
-    Key("drift", "whether to fit a linear drift of the zero", {"type": "boolean"}, False,
-        words="true or false"),
-    Key("loss", "loss function: soft_l1 gives little weight to outliers", word(*LOSSES), LOSSES[0]),
-    Key("cost", "residuals of amplitudes: logarithmic or relative differences", word(*COSTS),
-        COSTS[0]),
+_FREE = Key(
+    "free", "parameters to fit; must be all that are not in [known], which is the default; "
+    "contact_stiffness, delay and gain may be named, or are fitted where one of them explains the data",
+    several({"type": "string"}), example='["f_n", "zeta", "x_F", "X0", "t0", "centre"]',
+    words="a list of parameters",
 )  # fmt: skip
 
 
-def _known(name: str) -> Key:
+def _known(name: str, parameter: Parameter) -> Key:
     """A key of [known]: in its unit, or with any other of that kind as text."""
-    meaning, example, unit, _ = NUMBERS[name]
+    meaning, example, unit, _ = parameter
     if not unit:
         return Key(name, meaning, number(), example=example)
     kind = UNITS[unit].measures
@@ -101,15 +83,13 @@ def _with_example(key: Key, kind: str) -> Key:
 def rig_keys(kind: str) -> dict[str, tuple[Key, ...]]:
     """The keys of each table, for a kind of data."""
     of = KINDS[kind]
-    data = ("kind", "file", "columns", "decimal", "missing", *of.data)
-    known = (*of.parameters, *of.known)
-    fit = (*of.fit, *(("free",) if of.parameters else ()))
+    fit = (*((_FREE,) if of.parameters else ()), *of.fit)
     tables = {
         "": (_TITLE,),
-        "data": tuple(_with_example(key, kind) for key in _DATA if key.name in data),
+        "data": tuple(_with_example(key, kind) for key in (*_DATA, *of.data)),
         "system": of.system,
-        "known": tuple(_known(name) for name in known),
-        "fit": tuple(_with_example(key, kind) for key in _FIT if key.name in fit),
+        "known": tuple(_known(*item) for item in of.numbers.items()),
+        "fit": tuple(_with_example(key, kind) for key in fit),
     }
     return {name: keys for name, keys in tables.items() if keys}
 
@@ -140,16 +120,15 @@ def rig_schema() -> dict[str, Any]:
 
 def _several_measurements() -> dict[str, Any]:
     """Several measurements, tables [[data]]."""
-    named = {key.name: key for key in (*_DATA, _LABEL)}
+    named = {key.name: key for key in (*_DATA, WINDOW, _LABEL)}
     data = table(described(tuple(named[name] for name in DATA_KEYS)), ("kind", "file"))
     data["properties"]["kind"] = {"description": "what was measured", **word(*JOINED)}
-    known = tuple(_known(name) for name in (*JOINT.parameters, *JOINT.known))
-    fit = tuple(key for key in _FIT if key.name in (*JOINT.fit, "free"))
+    known = tuple(_known(*item) for item in JOINT.numbers.items())
     tables = {
         "data": {"description": "Measurements fitted together.", **several(data, least=2)},
         "system": keyed_table("system", JOINT.system, TABLES["system"]),
         "known": keyed_table("known", known, TABLES["known"]),
-        "fit": keyed_table("fit", fit, TABLES["fit"]),
+        "fit": keyed_table("fit", (_FREE, *JOINT.fit), TABLES["fit"]),
     }
     return {**table({**described(KEYS[""]), **tables}), "title": JOINT_NAME}
 

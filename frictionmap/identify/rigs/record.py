@@ -18,7 +18,19 @@ from ..tables.columns import Column, check_increasing, pick_columns
 from ..tables.files import Table
 from ..time_series.motion import CONTACTS
 from ..time_series.record import FITTABLE, record
-from .rig import BASE, REFERENCE, Kind, Rig, check_columns, in_unit, with_remarks
+from .rig import (
+    BASE,
+    LOSS,
+    REFERENCE,
+    STIFFNESS,
+    WINDOW,
+    Kind,
+    Rig,
+    check_columns,
+    in_unit,
+    named,
+    with_remarks,
+)
 
 _WANTED = {"time": "time", "base": "motion", "x": "motion"}
 
@@ -98,10 +110,10 @@ _CONTACT, _MASSES, *_ = KEYS["system"]
 
 RECORD = Kind(
     _record,
-    FITTABLE,
-    known=("stiffness",),
-    data=("window",),
-    fit=("loss",),
+    named(*FITTABLE),
+    known=STIFFNESS,
+    data=(WINDOW,),
+    fit=(LOSS,),
     system=(
         _CONTACT._replace(valid=word(*CONTACTS)),
         _MASSES._replace(meaning="the mass in contact", valid=several({"const": 1}, maxItems=1), words="[1]"),

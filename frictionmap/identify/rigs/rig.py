@@ -7,11 +7,11 @@ from typing import NamedTuple
 import xarray as xr
 
 from ...files.config import unknown_key
-from ...files.key import Key, word
+from ...files.key import Key, number, several, word
 from ...model.system import DAMPING_REFERENCES
 from ...units.table import conversion
-from ..chain.data import MOST_MASSES
 from ..parameters import PARAMETERS, Parameter
+from ..statistics.robust import LOSSES
 from ..tables.choices import Choice
 from ..tables.columns import Columns, unused_columns
 from ..tables.files import Table
@@ -44,29 +44,38 @@ REFERENCE = Key(
     word(*DAMPING_REFERENCES), DAMPING_REFERENCES[0],
 )  # fmt: skip
 
-#: Numbers of [known] that are no parameters: scales of the results; parameters of chains without friction.
-SCALES = {
-    "base_mm": Parameter("base amplitude Y for which beta = x_F/Y is reported, mm", "1.75", "mm"),
-    "stiffness": Parameter("spring stiffness, N/m: gives the friction force in N", "1191.0", "N/m"),
-}
-CHAIN = {
-    "f_k1m1": Parameter("natural frequency of mass 1 on its spring alone, Hz", "3.0", "Hz"),
-    "gamma": Parameter("mass ratio m_2/m_1, of two masses", "1.0"),
-    "kappa": Parameter("stiffness ratio k_2/k_1, of two masses", "1.0"),
-}
-_MASSES = range(1, MOST_MASSES + 1)
-CHAIN |= {f"mass_ratio_{k}": Parameter(f"mass ratio m_{k}/m_1", "1.0") for k in _MASSES[1:]}
-CHAIN |= {f"stiffness_ratio_{k}": Parameter(f"stiffness ratio k_{k}/k_1", "1.0") for k in _MASSES[1:]}
-CHAIN |= {f"zeta_{k}": Parameter(f"damping ratio of mode {k}", "0.01") for k in _MASSES}
+#: Keys of [data] and [fit] of several kinds.
+WINDOW = Key("window", "time window to be fitted, s", several(number(), 2, maxItems=2),
+             example="[0.5, 4.0]", words="[begin, end]")  # fmt: skip
+SIGMA_PHASE = Key(
+    "sigma_phase_deg", "standard error of phase lags; default: from the residuals", number(above=0.0),
+    example="1.0",
+)  # fmt: skip
+SIGMA_AMPLITUDE = Key(
+    "sigma_amplitude", "relative standard error of amplitudes; default: from the residuals",
+    number(above=0.0), example="0.02",
+)  # fmt: skip
+LOSS = Key("loss", "loss function: soft_l1 gives little weight to outliers", word(*LOSSES), LOSSES[0])
 
-#: Numbers of [known] by their keys; as text they may be in another unit of the same kind.
-NUMBERS = PARAMETERS | SCALES | CHAIN
+#: Scales of the results, further keys of [known].
+BASE_AMPLITUDE = {
+    "base_mm": Parameter("base amplitude Y for which beta = x_F/Y is reported, mm", "1.75", "mm")
+}
+STIFFNESS = {"stiffness": Parameter("spring stiffness, N/m: gives the friction force in N", "1191.0", "N/m")}
+
+#: Numbers of [known] of one mass by their keys.
+_NUMBERS = PARAMETERS | BASE_AMPLITUDE | STIFFNESS
+
+
+def named(*names: str) -> dict[str, Parameter]:
+    """Parameters of one mass, or of a structure with friction, by their names."""
+    return {name: PARAMETERS[name] for name in names}
 
 
 def in_unit(known: Mapping[str, float], unit: str) -> dict[str, float]:
     """Numbers of [known], lengths in the unit of the data."""
     scale = conversion("mm", unit)
-    return {key: value * scale if NUMBERS[key].unit == "mm" else value for key, value in known.items()}
+    return {key: value * scale if _NUMBERS[key].unit == "mm" else value for key, value in known.items()}
 
 
 class Kind(NamedTuple):
@@ -77,13 +86,18 @@ class Kind(NamedTuple):
     """
 
     identify: Callable[[Rig, Table], xr.Dataset]
-    parameters: tuple[str, ...]  # that [known] may hold and fit.free may name
-    known: tuple[str, ...] = ()  # further keys of [known]
-    data: tuple[str, ...] = ()  # further keys of [data]
-    fit: tuple[str, ...] = ()  # further keys of [fit]
+    parameters: Mapping[str, Parameter]  # that [known] may hold and fit.free may name
+    known: Mapping[str, Parameter] = {}  # further keys of [known]
+    data: tuple[Key, ...] = ()  # further keys of [data]
+    fit: tuple[Key, ...] = ()  # further keys of [fit]
     system: tuple[Key, ...] = ()  # of the table [system]; none: there is no such table
     needs_system: bool = False
     examples: Mapping[str, str] = {}  # of keys whose example is another one than for other kinds
+
+    @property
+    def numbers(self) -> dict[str, Parameter]:
+        """All keys of [known]; as text their values may be in another unit of the same kind."""
+        return {**self.parameters, **self.known}
 
 
 def check_columns(rig: Rig, valid: Sequence[str]) -> None:

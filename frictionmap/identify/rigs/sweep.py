@@ -8,14 +8,15 @@ import xarray as xr
 from ... import checks
 from ...errors import InputError, naming
 from ...files.config import unknown_key
-from ...files.key import Key, whole
+from ...files.key import Key, whole, word
 from ...units.table import conversion
 from ..chain.data import MOST_MASSES
 from ..chain.sweep import COSTS, DAMPINGS, sweep
+from ..parameters import Parameter
 from ..statistics.robust import LOSSES
 from ..tables.columns import Column, Columns, check_positive, columns_like, pick_columns
 from ..tables.files import Table
-from .rig import BASE, CHAIN, REFERENCE, Kind, Rig, check_columns, with_remarks
+from .rig import BASE, LOSS, REFERENCE, SIGMA_AMPLITUDE, SIGMA_PHASE, Kind, Rig, check_columns, with_remarks
 
 SYSTEM_KEYS = ("masses", "excitation", "damping_reference")
 _MEASURES = {"amplitude_ratio": "ratio", "phase_lag": "angle"}
@@ -90,12 +91,24 @@ def _checked_system(rig: Rig) -> int:
     return checks.whole(rig.system["masses"], "system.masses", least=1, most=MOST_MASSES)
 
 
+_MASSES = range(1, MOST_MASSES + 1)
+_NUMBERS = {
+    "f_k1m1": Parameter("natural frequency of mass 1 on its spring alone, Hz", "3.0", "Hz"),
+    "gamma": Parameter("mass ratio m_2/m_1, of two masses", "1.0"),
+    "kappa": Parameter("stiffness ratio k_2/k_1, of two masses", "1.0"),
+}
+_NUMBERS |= {f"mass_ratio_{k}": Parameter(f"mass ratio m_{k}/m_1", "1.0") for k in _MASSES[1:]}
+_NUMBERS |= {f"stiffness_ratio_{k}": Parameter(f"stiffness ratio k_{k}/k_1", "1.0") for k in _MASSES[1:]}
+_NUMBERS |= {f"zeta_{k}": Parameter(f"damping ratio of mode {k}", "0.01") for k in _MASSES}
+
+_COST = Key("cost", "residuals of amplitudes: logarithmic or relative differences", word(*COSTS), COSTS[0])
+
 SWEEP = Kind(
     _sweep,
-    (),
-    known=tuple(CHAIN),
-    data=("sigma_amplitude", "sigma_phase_deg"),
-    fit=("cost", "loss"),
+    {},
+    known=_NUMBERS,
+    data=(SIGMA_AMPLITUDE, SIGMA_PHASE),
+    fit=(_COST, LOSS),
     system=(
         Key("masses", "number of masses of the chain", whole(least=1, most=MOST_MASSES), example="2"),
         BASE,

@@ -693,7 +693,7 @@ def test_cells_as_files(one, tmp_path):
             np.testing.assert_array_equal(written[name].values, ds[name].values)
         assert written.attrs["title"] == "One mass"
         config = config_of(written.attrs["config"], {})
-    assert (config.title, config.mu, config.solver.outputs) == ("One mass", [1.2], tuple(ds.data_vars)[:-3])
+    assert (config.title, config.mu, config.solver.outputs) == ("One mass", [1.2], tuple(ds.data_vars)[:-2])
     np.testing.assert_array_equal(config.r, r)
     np.testing.assert_array_equal(config.beta, beta)
     status, body, _ = ask(one, f"/map.csv?{query}")

@@ -224,19 +224,17 @@ def _place_stuck(problem, grid, m, i, b, friction, workspace, place, out):
     -------
     int : _SOME_SLIP or _STAYS
     """
-    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
-    places, needs = workspace.places, workspace.needs
     if place == _STAYS:
         return _STAYS
-    state = grid.starts[i]
+    state, needs = grid.starts[i], workspace.needs
     _set_friction(grid, m, i, b, friction)
     changes = False  # whether a normal load varies: what is kept then depends on the friction
     for j in range(needs.size):
         changes = changes or varies(problem, j)
     if place == _UNKNOWN or changes:
-        if not keep_held(problem, row, friction, grid.tolerance, motion, memory, record, places):
+        if not keep_held(problem, friction, grid.tolerance, workspace):
             return _STAYS
-        fill_needs(problem, row, friction, state, motion, memory, record, places, needs)
+        fill_needs(problem, friction, state, workspace)
     _set_friction(grid, m, i, b, friction)
     stays = True
     for j in range(needs.size):
@@ -244,9 +242,7 @@ def _place_stuck(problem, grid, m, i, b, friction, workspace, place, out):
     if stays:
         return _STAYS
     shift = out.lowest[m, i, b]
-    if not place_after_start(
-        problem, row, friction, state, grid.cycles, motion, memory, record, places, shift
-    ):
+    if not place_after_start(problem, friction, state, grid.cycles, workspace, shift):
         out.status[m, i, b] = NOT_REACHED
         for k in range(shift.size):
             shift[k] = math.nan

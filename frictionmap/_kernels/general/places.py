@@ -225,15 +225,17 @@ def _fill_gains(problem, row, motion, places):
 
 
 @kernel
-def keep_orbit(problem, row, friction, halves, motion, memory, record, places):
+def keep_orbit(problem, friction, halves, workspace):
     """Keep the steady state in `memory.start`, with the forces in its contacts at rest; False if that fails.
 
     Parameters
     ----------
-    problem, row, friction : Problem, Row, Friction
+    problem, friction : Problem, Friction
     halves : even number of half periods after which it returns
-    motion, memory, record, places : Motion, Return, Record, Places with contacts at rest, their flexibility
+    workspace : Workspace, whose places have the contacts at rest and their flexibility
     """
+    row, motion, memory = workspace.row, workspace.motion, workspace.memory
+    record, places = workspace.record, workspace.places
     copy_motion(memory.start, memory.senses, places.orbit, places.senses)
     if not _fill_gains(problem, row, motion, places):
         return False
@@ -390,22 +392,23 @@ def _unload(problem, friction, places):
 
 
 @kernel
-def follow_to_rest(problem, row, friction, halves, cycles, safety, motion, memory, record, places):
+def follow_to_rest(problem, friction, halves, cycles, safety, workspace):
     """Follow the motion from `memory.start` until the places of the contacts at rest are known.
 
     Parameters
     ----------
-    problem, row, friction : Problem, Row, Friction
+    problem, friction : Problem, Friction
     halves : even number of half periods after which the steady state returns
     cycles : periods of the load to follow at most
     safety : see `_SAFETY`; 1 where all contacts rest
-    motion, memory, record, places : Motion, Return, Record, Places after `keep_orbit`; `places.change`
-        becomes that of the places of the motion
+    workspace : Workspace after `keep_orbit`; `places.change` becomes that of the places of the motion
 
     Returns
     -------
     (known, cycles) : whether the places are known, after `_unload`; periods followed
     """
+    row, motion, memory = workspace.row, workspace.motion, workspace.memory
+    record, places = workspace.record, workspace.places
     followed, still = 0.0, 0.0
     for j in range(places.rests.size):
         places.creep[_PERIODS, j] = places.creep[_SLOWLY, j] = 0.0
@@ -450,14 +453,14 @@ def _move_to_zero(problem, row, motion, memory, places):
 
 
 @kernel
-def keep_orbit_anew(problem, row, friction, halves, tolerance, bits, motion, memory, record, places):
+def keep_orbit_anew(problem, friction, halves, tolerance, bits, workspace):
     """Keep a steady state as `keep_orbit` does, with bits that do not depend on how it was found.
 
     It is found anew from its rounded state at the place 0.
 
     Parameters
     ----------
-    problem, row, friction, halves, motion, memory, record, places : see `keep_orbit`
+    problem, friction, halves, workspace : see `keep_orbit`
     tolerance : see `steady.find`
     bits : see `round_state`
 
@@ -465,6 +468,8 @@ def keep_orbit_anew(problem, row, friction, halves, tolerance, bits, motion, mem
     -------
     (kept, cycles) : whether that was possible; periods followed
     """
+    row, motion, memory = workspace.row, workspace.motion, workspace.memory
+    record, places = workspace.record, workspace.places
     fill_flexibility(problem, places)
     _move_to_zero(problem, row, motion, memory, places)
     keep_friction(friction, places.limits)
@@ -476,31 +481,31 @@ def keep_orbit_anew(problem, row, friction, halves, tolerance, bits, motion, mem
     restore_friction(friction, places.limits)
     if status != REPEATS:
         return False, cycles
-    kept = keep_orbit(problem, row, friction, halves, motion, memory, record, places)
+    kept = keep_orbit(problem, friction, halves, workspace)
     return kept, cycles + 0.5 * halves
 
 
 @kernel
-def settle_places(problem, row, friction, halves, cycles, motion, memory, record, places):
+def settle_places(problem, friction, halves, cycles, workspace):
     """Find the steady state with the places that the motion from `memory.start` leads to.
 
     Parameters
     ----------
-    problem, row, friction : Problem, Row, Friction; contacts at rest get a friction without limit
+    problem, friction : Problem, Friction; contacts at rest get a friction without limit
     halves : even number of half periods after which the steady state returns
     cycles : periods of the load to follow at most
-    motion, memory, record, places : Motion, Return, Record, Places after `keep_orbit`; `memory.start` becomes
-        the steady state
+    workspace : Workspace after `keep_orbit`; `memory.start` becomes the steady state
 
     Returns
     -------
     (known, cycles) : whether the places are known; periods followed
     """
+    memory, places = workspace.memory, workspace.places
     slide = 0
     for j in range(places.rests.size):
         slide += 1 - places.rests[j]
     known, followed = follow_to_rest(
-        problem, row, friction, halves, cycles, _SAFETY if slide > 0 else 1.0, motion, memory, record, places
+        problem, friction, halves, cycles, _SAFETY if slide > 0 else 1.0, workspace
     )
     _unload(problem, friction, places)
     _lift_limits(friction, places)
@@ -522,15 +527,10 @@ def _hold_all(friction, memory, places):
 
 
 @kernel
-def keep_held(problem, row, friction, tolerance, motion, memory, record, places):
-    """Keep the steady state in which all contacts rest at the place 0; False if none was found.
-
-    Parameters
-    ----------
-    problem, row, friction : Problem, Row, Friction
-    tolerance : see `steady.find`
-    motion, memory, record, places : Motion, Return, Record, Places
-    """
+def keep_held(problem, friction, tolerance, workspace):
+    """Keep the steady state in which all contacts rest at the place 0; False if none was found."""
+    row, motion, memory = workspace.row, workspace.motion, workspace.memory
+    record, places = workspace.record, workspace.places
     keep_friction(friction, places.limits)
     _hold_all(friction, memory, places)
     fill_flexibility(problem, places)
@@ -539,22 +539,22 @@ def keep_held(problem, row, friction, tolerance, motion, memory, record, places)
     status, _ = newton(problem, row, friction, 2, tolerance, motion, memory, record)
     restore_friction(friction, places.limits)
     _move_to_zero(problem, row, motion, memory, places)
-    return status == REPEATS and keep_orbit(problem, row, friction, 2, motion, memory, record, places)
+    return status == REPEATS and keep_orbit(problem, friction, 2, workspace)
 
 
 @kernel
-def fill_needs(problem, row, friction, state, motion, memory, record, places, needs):
+def fill_needs(problem, friction, state, workspace):
     """Fill the static friction of each contact with which none ever slips; inf if one moves at the start, or
     where the normal load varies.
 
     Parameters
     ----------
-    problem, row : Problem, Row
-    friction : Friction, replaced
+    problem, friction : Problem; Friction, replaced
     state : (2, m) modes and their velocities q' at tau = 0
-    motion, memory, record, places : Motion, Return, Record, Places after `keep_held`
-    needs : (N,)
+    workspace : Workspace after `keep_held`, whose needs are filled
     """
+    row, motion, memory = workspace.row, workspace.motion, workspace.memory
+    record, places, needs = workspace.record, workspace.places, workspace.needs
     for j in range(places.rests.size):
         friction.kinetic[j] = friction.static[j] = WITHOUT_LIMIT
         needs[j] = math.inf
@@ -570,24 +570,26 @@ def fill_needs(problem, row, friction, state, motion, memory, record, places, ne
 
 
 @kernel
-def place_after_start(problem, row, friction, state, cycles, motion, memory, record, places, shift):
+def place_after_start(problem, friction, state, cycles, workspace, shift):
     """Fill the displacements of contacts and masses that all rest, at the places to which the start leads.
 
     Parameters
     ----------
-    problem, row, friction : Problem, Row, Friction
+    problem, friction : Problem, Friction
     state : (2, m) modes and their velocities q' at tau = 0
     cycles : periods of the load to follow at most
-    motion, memory, record, places : Motion, Return, Record, Places after `keep_held`
+    workspace : Workspace after `keep_held`
     shift : (N + n,) filled with the displacements beside those at the place 0
 
     Returns
     -------
     bool : whether the places are known
     """
+    row, motion, memory = workspace.row, workspace.motion, workspace.memory
+    record, places = workspace.record, workspace.places
     contacts, modes = problem.chi.shape
     from_rest(problem, row, friction, state, motion, memory, record, NOTHING)
-    known, _ = follow_to_rest(problem, row, friction, 2, cycles, 1.0, motion, memory, record, places)
+    known, _ = follow_to_rest(problem, friction, 2, cycles, 1.0, workspace)
     if not known:
         return False
     _unload(problem, friction, places)

@@ -363,27 +363,25 @@ def _settle(problem, friction, state, found, cycles, tolerance, workspace):
     halves = found.halves if found.halves % 2 == 0 else 2 * found.halves
     if not is_unique(friction):  # the motion is near the steady state, which stays where it cannot be moved
         fill_flexibility(problem, places)
-        if not keep_orbit(problem, row, friction, halves, motion, memory, record, places):
+        if not keep_orbit(problem, friction, halves, workspace):
             take_orbit(memory, ring)
             return found
         go_back(memory, ring, 0)
-        _, more = settle_places(problem, row, friction, halves, cycles, motion, memory, record, places)
+        _, more = settle_places(problem, friction, halves, cycles, workspace)
         return Steady(REPEATS, halves, found.cycles + more)
     kept, spent = False, found.cycles
     for bits in BITS:
         if not kept:
             take_orbit(memory, ring)
-            kept, more = keep_orbit_anew(
-                problem, row, friction, halves, tolerance, bits, motion, memory, record, places
-            )
+            kept, more = keep_orbit_anew(problem, friction, halves, tolerance, bits, workspace)
             spent += more
     if not kept:  # rounding takes away what hardly moves
         take_orbit(memory, ring)
-        kept = keep_orbit(problem, row, friction, halves, motion, memory, record, places)
+        kept = keep_orbit(problem, friction, halves, workspace)
     if not kept:
         return Steady(NO_REPEAT, 0, spent)
     from_rest(problem, row, friction, state, motion, memory, record, NOTHING)
-    known, more = settle_places(problem, row, friction, halves, cycles, motion, memory, record, places)
+    known, more = settle_places(problem, friction, halves, cycles, workspace)
     return Steady(REPEATS if known else NO_REPEAT, halves, spent + more)
 
 

@@ -333,7 +333,7 @@ def test_the_value_is_shown_with_all_its_digits(base):
         (["0.5"], r"^r must be numbers; got \['0\.5'\]$"),
         (True, r"^r must be numbers; got True$"),
         (1j, r"^r must be numbers; got 1j$"),
-        (None, r"^r must be numbers; got None$"),
+        (None, r"^r must be given with a system, such as \[0\.5, 1\.0\]; got nothing$"),
         ([[1.0], [1.0, 2.0]], r"^r must be numbers; got \[\[1\.0\], \[1\.0, 2\.0\]\]$"),
         (np.array(["a"] * 40), r"^r must be numbers; got array\(\[.*\]"),
         ([10**400], r"^r must be numbers; got \[1000"),

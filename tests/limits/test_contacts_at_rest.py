@@ -58,7 +58,7 @@ TURNING = fm.System(
 )  # fmt: skip
 
 
-def test_every_cell_with_a_spring_beside_a_rigid_contact_has_an_answer():
+def test_every_cell_with_an_elastic_and_a_rigid_contact_has_an_answer():
     for system in (BESIDE, JOINT):
         ds = fm.sweep(system, np.linspace(0.2, 1.6, 15), np.linspace(0.05, 0.95, 19), outputs=["status"])
         assert (ds.status == 0).all()
@@ -94,8 +94,8 @@ def elastic_share(z, stiffness, limit):
     return rests / z.size
 
 
-def test_a_slider_beside_a_mass_that_the_base_carries_has_settled():
-    """Nothing but the force of the spring tells whether it has: the mass has the motion of the base."""
+def test_a_slider_next_to_a_mass_that_the_base_carries_has_settled():
+    """The force of the spring alone shows whether it has: the mass has the motion of the base."""
     motion = {1: 0.531 + 0.116j, 3: -1.058 + 0.974j}
     system = fm.System(
         damping_ratios=0.01, excitation="base", load_harmonics=motion,

@@ -162,7 +162,7 @@ def test_damping_of_some_modes_only():
     np.testing.assert_allclose(by_matrix.modes.w, w, rtol=1e-13)
 
 
-def test_a_damping_matrix_may_tell_modes_of_one_frequency_apart():
+def test_a_damping_matrix_may_distinguish_modes_of_one_frequency():
     """Two equal oscillators, coupled by a dashpot only: their sum is undamped, their difference is not."""
     C = 0.2 * np.array([[1.0, -1.0], [-1.0, 1.0]])
     system = fm.System(matrices={"M": np.eye(2), "K": np.eye(2), "C": C}, contact_masses=[1])

@@ -76,7 +76,7 @@ def test_low_damping_has_the_closed_form(masses, springs, zeta, load, contact, r
     assert fm.boundaries(general, [r], [mu]).beta_lim.item() == pytest.approx(wanted, rel=1e-12)
 
 
-def test_low_damping_beside_a_contact_without_friction():
+def test_low_damping_and_a_contact_without_friction():
     """A second contact whose friction is next to nothing takes the search instead of the closed form."""
     masses, springs, zeta, load, contact, r = SLOW[0]
     chain = {"mass_ratios": masses, "stiffness_ratios": springs, "damping_ratios": zeta, "load_mass": load}

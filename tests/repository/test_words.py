@@ -91,9 +91,6 @@ NAMES_OF_FUNCTIONS = (
     ),
 )
 
-#: Parts whose names and further texts are not checked; their docstrings and messages are.
-EXCEPTED = re.compile(r"tests/limits/")
-
 #: First words of docstrings that are fragments.
 FRAGMENTS = r"(Of|Those of|That of|The same of|The same as|What of|Than)"
 
@@ -216,11 +213,6 @@ def page_texts(path):
     return script_texts(source, place) if path.suffix == ".js" else [Text(place, source)]
 
 
-def checked(paths):
-    """Paths of which all texts and names are checked."""
-    return [path for path in paths if not EXCEPTED.match(path.relative_to(ROOT).as_posix())]
-
-
 def functions(paths):
     """Names of functions, and where they are."""
     for path in paths:
@@ -311,13 +303,13 @@ def test_docstrings_and_messages():
 
 def test_further_texts():
     """Labels of variables, comments in files, lines that are printed; comments of the code."""
-    for path in checked(PACKAGE):
+    for path in PACKAGE:
         tree = tree_of(path)
         assert not report(findings([*texts_within(tree, path.relative_to(ROOT)), *comments(path)]))
 
 
 def test_names_of_functions():
-    assert not report(names_of_functions(functions(checked(PACKAGE))))
+    assert not report(names_of_functions(functions(PACKAGE)))
 
 
 def test_citation():
@@ -333,12 +325,12 @@ def test_page():
 
 
 def test_names_of_tests():
-    paths = checked(sorted((ROOT / "tests").rglob("*.py")))
+    paths = sorted((ROOT / "tests").rglob("*.py"))
     assert not report(names_of_tests(functions(paths)))
 
 
 def test_docstrings_of_tests():
-    paths = checked(sorted((ROOT / "tests").rglob("*.py")))
+    paths = sorted((ROOT / "tests").rglob("*.py"))
     for path in paths:
         tree = tree_of(path)
         assert not report(findings(docstrings(tree, path.relative_to(ROOT))))

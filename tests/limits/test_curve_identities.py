@@ -51,7 +51,7 @@ def test_works_balance_in_every_cell(figure):
     assert int(resolved(ds).sum()) > 0.9 * resolved(ds).size
 
 
-def test_lag_of_the_loaded_mass_is_told_by_the_works(figure):
+def test_lag_of_the_loaded_mass_follows_from_the_works(figure):
     """sin(phi) = (W_f + W_v)/(pi X_1) of the mass that is loaded, where the load is on one mass."""
     system, ds = figure
     if system.base_motion:

@@ -1,4 +1,4 @@
-"""Boundaries of general systems: sticking for good, intervals without stops, belts that pull one way."""
+"""Boundaries of general systems: permanent sticking, intervals without stops, belts that pull one way."""
 
 import numpy as np
 import pytest

@@ -7,6 +7,7 @@ derived from it where more than its defaults is known: see `decay.part` and `tim
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -15,6 +16,16 @@ from .statistics.least_squares import Problem, Residuals
 
 #: What all parts share, in this order; (mu - 1)^2 stands for mu in the fit.
 SHARED = ("f_n", "zeta", "mu")
+
+
+class Settings(NamedTuple):
+    """What holds for all parts of a fit."""
+
+    unit: str  # of lengths
+    contact: str
+    damping_reference: str
+    known: Mapping[str, float]  # parameters that are held
+    loss: str
 
 
 @dataclass(frozen=True)

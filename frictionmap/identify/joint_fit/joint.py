@@ -13,7 +13,7 @@ from ...model.system import DAMPING_REFERENCES
 from ...units.table import checked_unit
 from ..decay.part import decay_part
 from ..parameters import ALIKE, checked_known, unit_of
-from ..part import SHARED, Part
+from ..part import SHARED, Part, Settings
 from ..statistics.estimates import estimates, friction_force, number, usable_errors, verdict
 from ..statistics.least_squares import Errors, Solution, errors, growth
 from ..statistics.robust import LOSSES
@@ -34,6 +34,9 @@ _MEANINGS = {
     "t0": "time of the first turning point",
     "centre": "place of the unloaded mass",
 }
+
+#: Parts by the number of their arrays.
+PARTS = {2: decay_part, 3: record_part}
 
 #: What may be held; x_F is then that of all data.
 KNOWN = ("f_n", "zeta", "mu", "x_F")
@@ -104,10 +107,8 @@ def joint(
     checks.choice(loss, "loss", LOSSES)
     held = checked_known(known or {}, KNOWN)
     names = _checked_labels(data, labels)
-    parts = [
-        _part(label, arrays, unit, contact, damping_reference, held, loss)
-        for label, arrays in zip(names, data, strict=True)
-    ]
+    settings = Settings(unit, contact, damping_reference, held, loss)
+    parts = [_part(label, arrays, settings) for label, arrays in zip(names, data, strict=True)]
     fit = fit_jointly(parts, held)
     found = _errors(fit)
     ds = _dataset(fit, found, unit).assign(_part_variables(fit, found, unit, stiffness))
@@ -132,18 +133,14 @@ def _checked_labels(data: object, labels: Sequence[object] | None) -> list[str]:
     return names
 
 
-def _part(
-    label: str, arrays: object, unit: str, contact: str, reference: str, known: dict[str, float], loss: str
-) -> Part:
-    if not isinstance(arrays, Sequence) or isinstance(arrays, str) or len(arrays) not in (2, 3):
+def _part(label: str, arrays: object, settings: Settings) -> Part:
+    if not isinstance(arrays, Sequence) or isinstance(arrays, str) or len(arrays) not in PARTS:
         raise InputError(
             f"data {label} must be (time, x) of a decay or (time, base, x) of a record; "
             f"got {checks.one_line(arrays)}"
         )
     with naming(f"data {label}"):
-        if len(arrays) == 2:
-            return decay_part(label, arrays[0], arrays[1], unit, known, loss)
-        return record_part(label, arrays, (contact, reference), known, loss)
+        return PARTS[len(arrays)](label, arrays, settings)
 
 
 def _names(fit: JointFit) -> list[str]:

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from ..parameters import ALIKE
-from ..part import Part
+from ..part import Part, Settings
 from ..statistics.estimates import number
 from .data import MeasuredRecord, fit_clipped, measured_record, whole_record
 from .fit import RecordFit, noise_of_record, problem_of
@@ -74,16 +74,12 @@ class RecordPart(Part):
         }
 
 
-def record_part(
-    label: str, arrays: Sequence[object], rig: tuple[str, str], known: Mapping[str, float], loss: str
-) -> Part:
-    """A record, first fitted alone with the known parameters held and mu = 1.
-
-    rig : the contact, and what the damper acts on
-    """
+def record_part(label: str, arrays: Sequence[object], settings: Settings) -> Part:
+    """A record, first fitted alone with the known parameters held and mu = 1."""
     time, base, x = arrays
-    given = measured_record(time, base, x, None, loss == "soft_l1")
-    return _fitted(label, given, rig, known, known)
+    given = measured_record(time, base, x, None, settings.loss == "soft_l1")
+    rig = settings.contact, settings.damping_reference
+    return _fitted(label, given, rig, settings.known, settings.known)
 
 
 def _fitted(

@@ -34,7 +34,6 @@ MOTIONS = (
     (0.05, 0.0, 0.5, 1.0),
 )
 DEFAULT_STEPS = 24
-STEPS = (8, 16, DEFAULT_STEPS, 48)
 SLIDES = 2000
 
 #: Displacements of kernel and probes at the end may differ by rounding, many slides long; by more, and they
@@ -171,18 +170,6 @@ def jump(r, zeta, b, mu_b, track):
     return z, stuck
 
 
-def _kernel_times(r: float, zeta: float, b: float, mu: float, repeats: int) -> dict:
-    """Nanoseconds per segment of the kernel, by number of scan steps."""
-    work = np.empty(MAX_TERMS)
-    found = {}
-    for steps in STEPS:
-        step = step_constants(r, zeta, float(steps))
-        _, stops = follow(step, b, mu * b, SLIDES, work)
-        seconds = [timed(lambda s=step: follow(s, b, mu * b, SLIDES, work))[0] for _ in range(repeats)]
-        found[f"{steps} steps"] = spread([1e9 * t / (SLIDES + stops) for t in seconds])
-    return found
-
-
 def one_motion(r: float, zeta: float, b: float, mu: float, repeats: int) -> dict:
     """Kernel and probes on one motion, alternating."""
     work = np.empty(MAX_TERMS)
@@ -212,7 +199,6 @@ def one_motion(r: float, zeta: float, b: float, mu: float, repeats: int) -> dict
         "stops a slide": stops / SLIDES,
         "kernel over its closed forms": entry["kernel"]["median"] / floor,
         "displacements differ by": off,
-        "kernel, by scan steps a period": _kernel_times(r, zeta, b, mu, repeats),
     }
 
 

@@ -84,7 +84,7 @@ def test_one_rigid_contact_is_that_of_the_other_engine(kind, masses, system):
     [*ONE_CONTACT, ("fixed-wall", (2,), {**CHAIN, "excitation": "base", "damping_reference": "base"})],
 )
 def test_the_moving_start_is_that_of_the_other_engine(kind, masses, system):
-    """At mu = 2, where the start decides in many cells."""
+    """At mu = 2, where the result depends on the initial state in many cells."""
     plain = fm.System(kind, masses, **system)
     general = fm.System(contacts=[fm.Contact(kind, masses)], **system)
     r, beta = np.linspace(0.23, 2.2, 9), np.linspace(0.02, 1.6, 9)

@@ -56,7 +56,7 @@ def test_ties_with_beta_stick_stick():
 
 
 def test_fixed_wall_at_rest_frequency():
-    """r = 0: linear at beta = 0, stuck from beta_stick on, and in between stick-slip without a count."""
+    """r = 0: linear at beta = 0, stuck at or above beta_stick, and in between stick-slip without a count."""
     ds = fm.sweep(fm.System(), [0.0], [0.0, 0.5, 1.0], 1.0, outputs=OUTPUTS)
     assert ds.regime.values.ravel().tolist() == [
         regimes.CONTINUOUS, regimes.STICK_SLIP, regimes.PERMANENT_STICKING

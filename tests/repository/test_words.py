@@ -331,9 +331,8 @@ def test_names_of_tests():
 
 def test_docstrings_of_tests():
     paths = sorted((ROOT / "tests").rglob("*.py"))
-    for path in paths:
-        tree = tree_of(path)
-        assert not report(findings(docstrings(tree, path.relative_to(ROOT))))
+    found = (one for path in paths for one in findings(docstrings(tree_of(path), path.relative_to(ROOT))))
+    assert not report(found)
 
 
 @pytest.mark.parametrize(

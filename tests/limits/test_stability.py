@@ -31,7 +31,7 @@ BASE = fm.System(contact="joined-base-wall")
 @pytest.mark.plain
 @pytest.mark.parametrize("r", [0.75, 0.9, 2.0, 3.0])
 def test_closed_form_of_one_mass(r):
-    """Two turns a period: det of the half-period map is the ratio of the accelerations at a turn.
+    """Two turns per period: det of the half-period map is the ratio of the accelerations at a turn.
 
     With a complex pair the modulus is its root: rho = (Z - beta/r^2)/(Z + beta/r^2) over a period.
     """
@@ -235,7 +235,7 @@ def test_steady_states_are_stable_and_antiperiodic_where_unique():
 
 
 def test_asymmetric_motion():
-    """One stop a cycle cannot be antiperiodic: joined base-wall, r = 0.52, beta = 0.06, mu = 1.5."""
+    """One stop per cycle cannot be antiperiodic: joined base-wall, r = 0.52, beta = 0.06, mu = 1.5."""
     ds = fm.sweep(BASE, [0.52], [0.06], 1.5, outputs=OUTPUTS)
     assert ds.stops_per_cycle.item() == 1.0
     history = fm.response(BASE, 0.52, 0.06, 1.5, points=4000)
@@ -257,7 +257,7 @@ def test_asymmetric_motion():
     ],
 )
 def test_asymmetry_is_that_of_the_response(r, beta, mu, period, mirrored):
-    """Least over odd m of max |z(tau + m pi) + z(tau)|, over the amplitude, by 4,000 samples a period.
+    """Least over odd m of max |z(tau + m pi) + z(tau)|, over the amplitude, by 4,000 samples per period.
 
     A motion of period 3 that is its own mirror image is so after three half periods, not after one.
     """
@@ -318,7 +318,7 @@ def test_what_is_reachable_does_not_depend_on_the_grid(system, r, mu):
 
 @pytest.mark.parametrize("system", [fm.System(), BASE, fm.System(damping_ratios=0.3), TWO])
 def test_what_is_proved_is_listed(system):
-    """theory.md 6: continuous below beta_lim, stuck from beta_stick on, nothing else beyond mu beta_stick."""
+    """theory.md 6: continuous below beta_lim, stuck at or above beta_stick, nothing else beyond mu beta_stick."""
     rng = np.random.default_rng(9)
     r, mu = np.sort(rng.uniform(0.2, 2.0, 4)), [1.0, 1.7]
     edges = fm.boundaries(system, r, mu)

@@ -260,7 +260,7 @@ BAD_FILES = {
     "cut short": (GOOD[:-100], "not an .npz file"),
     "damaged": (GOOD.replace(b"\x00\x00\xf0\x3f", b"\x00\x00\xf1\x3f"), "not an .npz file of plain arrays"),
     "an archive of something else": (archive(M_npy=b"M", K_npy=b"K"), "real numbers"),
-    "an archive of text": (archive(a_txt=b"M"), "'a.txt'"),
+    "an archive of text": (archive(a_txt=b"M"), "got a.txt"),
     "an empty archive": (archive(), "got none"),
     "a header that promises too much": (
         archive(M_npy=EYE.replace(b"(2, 2)", b"(9, 9)"), K_npy=EYE),

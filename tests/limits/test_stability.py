@@ -318,7 +318,7 @@ def test_what_is_reachable_does_not_depend_on_the_grid(system, r, mu):
 
 @pytest.mark.parametrize("system", [fm.System(), BASE, fm.System(damping_ratios=0.3), TWO])
 def test_what_is_proved_is_listed(system):
-    """theory.md 6: continuous below beta_lim, stuck at or above beta_stick, nothing else beyond mu beta_stick."""
+    """theory.md 6: continuous below beta_lim, can stick from beta_stick, stuck beyond mu beta_stick."""
     rng = np.random.default_rng(9)
     r, mu = np.sort(rng.uniform(0.2, 2.0, 4)), [1.0, 1.7]
     edges = fm.boundaries(system, r, mu)

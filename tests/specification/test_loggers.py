@@ -206,7 +206,7 @@ def test_a_calibration(tmp_path):
         ('{ x = { unit = "furlong" } }', "data.columns.x.unit must be one of Hz, kHz"),
         ("{ x = { scale = 0.0 } }", "data.columns.x.scale must not be 0"),
         ('{ x = { scale = "4" } }', "data.columns.x.scale must be a number"),
-        ('{ x = { nam = "Weg" } }', "unknown key 'data.columns.x.nam' (did you mean name?)"),
+        ('{ x = { names = "Weg" } }', "unknown key 'data.columns.x.names' (did you mean name?)"),
         ("{ x = 3 }", "data.columns must be a table of column names"),
         ('{ x = { name = "" } }', "data.columns.x.name must be text"),
     ],

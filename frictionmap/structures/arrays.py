@@ -34,7 +34,8 @@ def read_npz(path: Path) -> dict[str, Any]:
 def read_npy(path: Path) -> dict[str, Any]:
     """The one array of an .npy file, by the name of the file."""
     try:
-        return {path.stem: np.load(path, allow_pickle=False)}
+        with open(path, "rb") as file:
+            return {path.stem: np.lib.format.read_array(file, allow_pickle=False)}
     except _NOT_NPZ:
         raise InputError(
             "matrices", f": cannot read {path}: it is not an .npy file of numbers; save it with numpy.save"
@@ -50,7 +51,7 @@ def read_sparse_or_npz(path: Path) -> dict[str, Any]:
 
     try:
         return {path.stem: load_npz(path)}
-    except _NOT_NPZ:
+    except (*_NOT_NPZ, KeyError):
         raise InputError(
             "matrices", f": cannot read {path}: its sparse matrix is damaged; save it again"
         ) from None

@@ -453,3 +453,18 @@ def test_rows_in_any_order_and_by_names(tmp_path):
     np.testing.assert_allclose(found.amplitude.values, wanted.amplitude.values, rtol=1e-9)
     by_name = fm.sweep(named, [0.3, 0.8], [0.1, 0.5], outputs=["amplitude"])
     np.testing.assert_allclose(by_name.amplitude.values, wanted.amplitude.values[..., order], rtol=1e-9)
+
+
+def test_damaged_files_of_one_matrix(tmp_path):
+    scipy.sparse.save_npz(tmp_path / "whole.npz", scipy.sparse.csr_array(M))
+    arrays = dict(np.load(tmp_path / "whole.npz"))
+    np.savez(tmp_path / "short.npz", **{**arrays, "indptr": arrays["indptr"][:1]})
+    np.savez(tmp_path / "incomplete.npz", **{name: one for name, one in arrays.items() if name != "indices"})
+    for name in ("short.npz", "incomplete.npz"):
+        with pytest.raises(fm.InputError, match=f"{name}: its sparse matrix is damaged; save it again"):
+            boundaries_of({"M": tmp_path / name, "K": tmp_path / "whole.npz"})
+    contents = {"text.npy": b"no array", "empty.npy": b"", "npz.npy": (tmp_path / "whole.npz").read_bytes()}
+    for name, content in contents.items():
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(fm.InputError, match=f"{name}: it is not an .npy file of numbers; save it with"):
+            boundaries_of({"M": tmp_path / name, "K": tmp_path / "whole.npz"})

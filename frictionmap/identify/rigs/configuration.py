@@ -22,7 +22,7 @@ from ..parameters import checked_free
 from ..tables.choices import checked_choices, chosen
 from ..tables.columns import MISSING
 from ..tables.files import FORMS, read_table
-from ..tables.text_files import DECIMALS
+from ..tables.text_files import checked_decimal
 from .decay import FREE_DECAY
 from .forced import FORCED
 from .joint import JOINT, checked_data, data_paths, fit_together
@@ -64,14 +64,13 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
     if not isinstance(file, str) or not file:
         given = checks.one_line(file) if "file" in data else "nothing"
         raise InputError(f"data.file must be the path of a file of measured data; got {given}")
-    decimal = data.get("decimal")
     choices = checked_choices(data.get("columns", {}), "data.columns")
     missing = checks.choice(data.get("missing", MISSING[0]), "data.missing", MISSING)
     values, free = _held_and_free(known, fit, kind)
     source = path.parent / file
     return Rig(
         _title(tree, Path(file).stem), name, source, {}, choices,
-        None if decimal is None else checks.choice(decimal, "data.decimal", DECIMALS),
+        checked_decimal(data.get("decimal"), "data.decimal"),
         _chosen(data, kind.data), missing,
         _table(tree, "system"), values, free, _chosen(fit, kind.fit), text, path.stem, (path, source),
     )  # fmt: skip

@@ -16,7 +16,7 @@ from ..signals.samples import within
 from ..tables.choices import checked_choices, chosen
 from ..tables.columns import MISSING, check_increasing, pick_columns
 from ..tables.files import Table, read_table
-from ..tables.text_files import DECIMALS
+from ..tables.text_files import checked_decimal
 from .record import RECORD, one_mass_on_base
 from .rig import LOSS, STIFFNESS, Kind, Rig, named
 
@@ -66,8 +66,7 @@ def _checked(table: object, name: str, label: str) -> dict[str, object]:
         if not isinstance(result.get(key), str) or not result[key]:
             raise InputError(f"{name}.{key} must be text; got {checks.one_line(result.get(key))}")
     result["columns"] = checked_choices(result["columns"], f"{name}.columns")
-    if result["decimal"] is not None:
-        checks.choice(result["decimal"], f"{name}.decimal", DECIMALS)
+    checked_decimal(result["decimal"], f"{name}.decimal")
     for role in result["columns"]:
         if role not in JOINED[kind]:
             raise unknown_key(role, f"{name}.columns", tuple(JOINED[kind]))

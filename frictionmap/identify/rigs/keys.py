@@ -8,10 +8,9 @@ from typing import Any
 from ...files.json_schema import DIALECT, described, keyed_table
 from ...files.key import Key, either, number, several, table, with_unit, word
 from ...files.keys import KEYS
-from ...units.table import COLUMN_UNITS, UNITS, units_of
+from ...units.table import COLUMN_NAMES, UNITS, units_of
 from ..parameters import Parameter
 from ..tables.columns import MISSING
-from ..tables.headings import unit_name
 from ..tables.text_files import DECIMALS
 from .configuration import JOINT_NAME, KINDS
 from .joint import DATA_KEYS, JOINED, JOINT
@@ -31,7 +30,7 @@ _TITLE = KEYS[""][0]._replace(meaning="title of plots; default: name of the data
 _COLUMN = table(
     {
         "name": {"type": "string", "minLength": 1},
-        "unit": word(*(unit_name(one) for one in COLUMN_UNITS)),
+        "unit": word(*COLUMN_NAMES.values()),
         "scale": number(),
         "offset": number(),
     }

@@ -11,9 +11,9 @@ import numpy as np
 from ... import checks
 from ...errors import InputError
 from ...files.config import unknown_key
-from ...units.table import COLUMN_UNITS
+from ...units.table import COLUMN_NAMES
 from .files import Table
-from .headings import column_unit, heading, unit_name, words_of
+from .headings import column_unit, heading, words_of
 
 KEYS = ("name", "unit", "scale", "offset")
 
@@ -57,7 +57,7 @@ def _checked(value: str | Mapping[str, object], where: str) -> Choice:
             raise InputError(f"{where}.{key} must be text; got {checks.one_line(value[key])}")
     suffix = column_unit(str(unit))
     if unit and not suffix:
-        valid = [unit_name(one) for one in COLUMN_UNITS]
+        valid = list(COLUMN_NAMES.values())
         raise InputError(
             f"{where}.unit must be one of {', '.join(valid)}; got {unit!r}{checks.nearest(str(unit), valid)}"
         )

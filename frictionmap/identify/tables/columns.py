@@ -8,10 +8,10 @@ import numpy as np
 
 from ... import checks
 from ...errors import InputError
-from ...units.table import COLUMN_UNITS, suffixes
+from ...units.table import COLUMN_NAMES, COLUMN_UNITS, suffixes
 from .even_times import evened
 from .files import Table
-from .headings import ELECTRICAL, heading, unit_name, words_of
+from .headings import ELECTRICAL, heading, words_of
 from .text_files import number
 
 #: Treatment of values that are not numbers.
@@ -175,7 +175,7 @@ def _remedy(table: Table, role: str, names: Mapping[str, str], valid: Sequence[s
 
 
 def _unit_key(suffix: str) -> str:
-    return f'unit = "{unit_name(suffix[1:])}"'
+    return f'unit = "{COLUMN_NAMES[suffix[1:]]}"'
 
 
 def _unit(table: Table, column: str, role: str, valid: Sequence[str]) -> str:
@@ -188,7 +188,7 @@ def _unit(table: Table, column: str, role: str, valid: Sequence[str]) -> str:
     where, endings = f"file {table.file}, column {column}", ", ".join(valid)
     line = f"or write {_line(role, column, calibration + _unit_key(valid[0]))} below [data]"
     if calibration:
-        line += f", with the {unit_name(valid[0][1:])} per {unit} of the sensor as scale"
+        line += f", with the {COLUMN_NAMES[valid[0][1:]]} per {unit} of the sensor as scale"
     raise InputError(f"{where}: its name must end in a unit, {endings}; got {what} ({line})")
 
 

@@ -80,15 +80,13 @@ def _read_text(path: Path, decimal: str | None = None) -> Table:
     """A table of text: numbers, and columns of stamps as seconds."""
     found = read_text(path, decimal)
     texts = {name: [row[k] for row in found.rows] for k, name in enumerate(found.names)}
-    columns = {name: _values(name, fields, found.decimal) for name, fields in texts.items()}
     units = {name: "s" for name, fields in texts.items() if fields and is_stamp(fields[0])}
+    comma = found.decimal == ","
+    columns = {
+        name: seconds(fields, name) if name in units else np.array([number(field, comma) for field in fields])
+        for name, fields in texts.items()
+    }
     return Table(path, columns, texts, found.first, "line", found.form, units, remark=found.remark)
-
-
-def _values(name: str, fields: list[str], decimal: str) -> np.ndarray:
-    if fields and is_stamp(fields[0]):
-        return seconds(fields, name)
-    return np.array([number(field, decimal == ",") for field in fields])
 
 
 def _read_npz(path: Path) -> Table:

@@ -50,13 +50,8 @@ def column_unit(text: str) -> str:
     """A unit in the form that names of columns end in; empty if no column may be in it."""
     if text in COLUMN_UNITS:
         return text
-    name = known_unit(text) or known_unit(text.replace("²", "^2"))
+    name = known_unit(text)
     return UNITS[name].column if name else ""
-
-
-def unit_name(column: str) -> str:
-    """The unit of a column as people write it."""
-    return next((name for name, unit in UNITS.items() if unit.column == column), column)
 
 
 def is_units(fields: list[str]) -> bool:

@@ -49,7 +49,7 @@ class TextTable(NamedTuple):
 def read_text(path: Path, decimal: str | None = None) -> TextTable:
     """Read a file of text.
 
-    decimal : the decimal sign; None: as the numbers show it
+    decimal : the decimal sign, "." or ","; None: as the numbers show it
 
     Raises
     ------
@@ -82,6 +82,11 @@ def _names(lines: Sequence[str], header: int, separator: str) -> tuple[list[str]
         named = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, units, strict=True)]
         return named, header + 2
     return names, header + 1
+
+
+def checked_decimal(value: object, where: str) -> str | None:
+    """A decimal sign, or None: as the numbers show it; `where` is the key that holds it."""
+    return None if value is None else checks.choice(value, where, DECIMALS)
 
 
 def number(field: str, comma: bool) -> float:
@@ -205,7 +210,7 @@ def _decimal(path: Path, rows: list[list[str]], given: str | None) -> str:
         Commas may be decimal signs or stand between thousands.
     """
     if given is not None:
-        return checks.choice(given, "data.decimal", DECIMALS)
+        return given
     commas = [field for row in rows for field in row if "," in field and _DECIMAL_COMMA.fullmatch(field)]
     if not commas:
         return "."

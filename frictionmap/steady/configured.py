@@ -57,7 +57,7 @@ def system_and_axes(
     InputError
         Neither a system nor a configuration is given, or a system without its axes.
     """
-    if isinstance(system, Configured):
+    if not isinstance(system, System) and isinstance(system, Configured):
         config = system
         return Asked(
             config.system,

@@ -11,14 +11,11 @@ import math
 import numpy as np
 
 from ..compiler import kernel
+from .laws.coulomb import TOGETHER
 from .laws.kinds import has_constraint, is_constrained, keeps_force
 from .problem import F, H, P, Q, force_row
 from .row import set_channels
 from .series import factor_held, solve_held
-
-#: A slider with a velocity below this share of the velocities in it, on its way to zero, arrives with the
-#: contact whose arrival was found: in symmetric systems contacts arrive together.
-_TOGETHER = 1e-11
 
 #: Loads within this share of the largest excess let go together.
 _TIED = 1e-9
@@ -213,7 +210,7 @@ def _arrives_too(problem, row, motion, box, j):
         size += abs(part)
     for d in range(channels):
         w -= problem.base[j, d] * series[modes + d, 1]
-    return abs(w) <= _TOGETHER * size and motion.sense[j] * box[FREE, j] <= 0.0
+    return abs(w) <= TOGETHER * size and motion.sense[j] * box[FREE, j] <= 0.0
 
 
 @kernel

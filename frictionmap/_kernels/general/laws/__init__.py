@@ -1,7 +1,7 @@
 """Contact laws: what a contact is while it is held, what is watched, and what follows an event.
 
 Each law has a file.  The engine asks through `contact`, which passes each question on to the law of the
-contact; `kinds` tells the laws apart, from the numbers of the contact.  A contact is in one of few phases, in
+contact; `kinds` determines the law from the numbers of the contact.  A contact is in one of few phases, in
 each of which the motion is linear: it slides up or down, or it is held, by a constraint or by a spring.
 
 ========  ========================================================================================

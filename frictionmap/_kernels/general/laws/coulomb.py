@@ -5,8 +5,9 @@ from ...compiler.vectors import LANES, load, store
 from ..crossings import NONE, first_zero, slope_at, value_at
 from ..problem import TERMS, WATCHED, WIDTH, force_row, normal_row, velocity_row
 
-#: A velocity within this share of its size is zero together with one that is.
-_TOGETHER = 1e-11
+#: A velocity within this share of its size, on its way to zero, is zero together with one that is: in
+#: symmetric systems contacts arrive together.
+TOGETHER = 1e-11
 
 
 @inner_kernel
@@ -75,6 +76,6 @@ def comes_to_rest(problem, motion, x, j):
     w, size = velocity_row(problem, j), 0.0
     for k in range(TERMS):
         size += abs(motion.series[w, k])
-    if abs(value_at(motion.series, w, x)) > _TOGETHER * size:
+    if abs(value_at(motion.series, w, x)) > TOGETHER * size:
         return False
     return motion.sense[j] * slope_at(motion.series, w, x) <= 0.0

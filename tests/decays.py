@@ -68,3 +68,54 @@ def synthetic(truth, seed, mu=1.0):
         begin += half
     noise = np.random.default_rng(seed).normal(0.0, truth.noise, time.size)
     return time, truth.centre + x + noise
+
+
+def marched_signal(truth, order, time, low_pass=None, ac_coupling=None):
+    """What a sensor shows at `time`: motion and filters integrated together, without noise; mu = 1.
+
+    order : 0 displacement from the centre, 1 velocity, 2 acceleration, in mm and s
+    low_pass : (1 or 2, Hz), of order 2 with the damping ratio 1/sqrt(2); ac_coupling : Hz, of order 1
+    """
+    w, corner = 2.0 * np.pi * truth.f_n, 2.0 * np.pi * (low_pass[1] if low_pass else 0.0)
+    couple = 2.0 * np.pi * (ac_coupling or 0.0)
+
+    def output(state, push, moving):
+        slope = -2.0 * truth.zeta * w * state[1] - w**2 * (state[0] - push)
+        raw = (state[0], state[1], slope if moving else 0.0 * slope)[order]
+        return raw if low_pass is None else state[2]
+
+    def slopes(_, state, push, moving):
+        acceleration = -2.0 * truth.zeta * w * state[1] - w**2 * (state[0] - push) if moving else 0.0
+        raw = (state[0], state[1], acceleration)[order]
+        filtered, rate = raw, 0.0
+        first = second = 0.0
+        if low_pass and low_pass[0] == 1:
+            first, filtered = corner * (raw - state[2]), state[2]
+        elif low_pass:
+            first, rate, filtered = state[3], state[3], state[2]
+            second = corner**2 * (raw - state[2]) - np.sqrt(2.0) * corner * rate
+        return [state[1] * moving, acceleration, first, second, couple * (filtered - state[4])]
+
+    held = truth.X0 if order == 0 else 0.0
+    state, begin = np.array([truth.X0, 0.0, held, 0.0, held]), truth.t0
+    shown = np.full(time.size, 0.0 if ac_coupling else held)
+    while begin < time[-1]:
+        moving = abs(state[0]) > truth.x_F
+        push = np.sign(state[0]) * truth.x_F
+
+        side = np.sign(state[0])
+
+        def turn(t, state, push, moving, begin=begin, side=side):
+            return state[1] if moving and t > begin + 1e-6 else -side
+
+        turn.terminal, turn.direction = True, side
+        end = begin + 1.0 / truth.f_n if moving else time[-1] + 1.0
+        run = solve_ivp(
+            slopes, (begin, end), state, "DOP853", args=(push, moving), events=turn, rtol=1e-11, atol=1e-12,
+            dense_output=True,
+        )  # fmt: skip
+        inside = (time >= begin) & (time <= run.t[-1])
+        states = run.sol(time[inside])
+        shown[inside] = output(states, push, moving) - (states[4] if ac_coupling else 0.0)
+        begin, state = run.t[-1], run.y[:, -1] * [1.0, 0.0, 1.0, 1.0, 1.0]
+    return shown

@@ -11,7 +11,7 @@ from .chain.estimates import chain_names
 from .chain.fit import Measured
 from .chain.fit import problem as chain_problem
 from .decay.motion import PARAMETERS
-from .decay.problem import DRIFT, record_of
+from .decay.problem import DRIFT, OFFSET, record_of
 from .decay.problem import problem as decay_problem
 from .statistics.least_squares import Problem
 
@@ -65,7 +65,8 @@ def log_likelihood(ds: xr.Dataset) -> LogLikelihood:
     LogLikelihood
         A function of theta; its attribute `names` says which parameters theta holds.  Errors of the samples
         are those of the variable `sigma`.  A decay has as many half cycles before rest as the fit found;
-        the polynomial of a wandering zero is integrated out.
+        the polynomial of a wandering zero and the states of filters
+        at the first sample are integrated out.
 
     Raises
     ------
@@ -99,13 +100,15 @@ def _function(
 
 
 def _decay_likelihood(ds: xr.Dataset) -> LogLikelihood:
-    names = (*PARAMETERS, DRIFT)[: ds.sizes["parameter"]]
+    last = OFFSET if OFFSET in ds["parameter"] else PARAMETERS[-1]
+    names = (*PARAMETERS[:-1], last, DRIFT)[: ds.sizes["parameter"]]
     record, n, start = record_of(ds, names)
     values, sigma = start[: len(names)], ds["sigma"].values
-    plain = decay_problem(record._replace(wander=None), n, values)
+    plain = decay_problem(record._replace(wander=None, transients=None), n, values)
 
-    # coefficients of a wander have a flat prior: what they can follow is no residual
-    slow = np.zeros((sigma.size, 0)) if record.wander is None else np.linalg.qr(record.wander)[0]
+    # coefficients of a wander and states of filters have a flat prior: what they can follow is no residual
+    free = [basis for basis in (record.wander, record.transients) if basis is not None]
+    slow = np.linalg.qr(np.concatenate(free, axis=1))[0] if free else np.zeros((sigma.size, 0))
 
     def residuals(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         found, slopes = plain.residuals(at)

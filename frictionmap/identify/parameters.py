@@ -16,6 +16,9 @@ STIFFEST, SOFTEST = 1e-4, 1e3
 ALIKE = {"delay": 0.0, "gain": 1.0}
 CHANNELS = tuple(ALIKE)
 
+#: Where and when a decay starts, and the zero of its signal: fitted unless they are known, named or not.
+OF_START = ("X0", "t0", "centre", "offset")
+
 
 class Parameter(NamedTuple):
     """A number that may be known."""
@@ -50,13 +53,20 @@ PARAMETERS = {
     "t0": Parameter("time of the first turning point, s", "0.0", "s"),
     "centre": Parameter("position of the unloaded mass, mm", "0.0", "mm"),
     "drift": Parameter("drift of the place of the unloaded mass, mm/s", "0.0", "mm/s"),
+    "offset": Parameter(
+        "zero of a decay that was measured as anything but a displacement, in the unit of its column", "0.0"
+    ),
     "offset_x": Parameter("position of the unloaded mass for zero base displacement, mm", "0.0", "mm"),
 }  # fmt: skip
 
 
-def unit_of(name: str, length: str) -> str:
-    """Unit of a parameter in a dataset, "1" if it has none, with lengths in the unit of the data."""
-    return PARAMETERS[name].unit.replace("mm", length) or "1"
+def unit_of(name: str, length: str, column: str = "") -> str:
+    """Unit of a parameter in a dataset, "1" if it has none, with lengths in the unit of the data.
+
+    column : unit of the data, if it is not that of lengths
+    """
+    of_column = {"offset": column, "drift": f"{column}/s" if column else ""}
+    return of_column.get(name) or PARAMETERS[name].unit.replace("mm", length) or "1"
 
 
 def checked_known(known: Mapping[str, float], valid: Sequence[str]) -> dict[str, float]:
@@ -120,5 +130,5 @@ def refuse_mu(free: Collection[str] | None, known: dict[str, float]) -> None:
 
 
 def _optional(named: Collection[str]) -> tuple[str, ...]:
-    """Parameters that are neither fitted nor held: of the other kind of contact, or of unlike channels."""
-    return (*CHANNELS, CONTACT_STIFFNESS, *(("mu",) if CONTACT_STIFFNESS in named else ()))
+    """Parameters that need not be named: of the other kind of contact, of unlike channels, of the start."""
+    return (*CHANNELS, *OF_START, CONTACT_STIFFNESS, *(("mu",) if CONTACT_STIFFNESS in named else ()))

@@ -98,6 +98,9 @@ COLUMN_NAMES = {unit.column: name for name, unit in UNITS.items() if unit.column
 #: What motion is measured as, in the order of its derivatives.
 MOTIONS = ("length", "velocity", "acceleration")
 
+#: What columns may measure that take more than one quantity.
+_SEVERAL = {"motion": MOTIONS, "swing": (*MOTIONS, "angle")}
+
 
 def units_of(measures: str) -> tuple[str, ...]:
     """Units of frequency, force, length, mass, stiffness, velocity, acceleration, time or angle."""
@@ -119,9 +122,9 @@ def known_unit(text: str) -> str | None:
 def suffixes(measures: str) -> tuple[str, ...]:
     """Suffixes of columns of time, length, frequency, angle or force; none for a ratio.
 
-    A column of "motion" is one of `MOTIONS`.
+    A column of "motion" is one of `MOTIONS`, one of "swing" also an angle.
     """
-    kinds = MOTIONS if measures == "motion" else (measures,)
+    kinds = _SEVERAL.get(measures, (measures,))
     return tuple(f"_{name}" for kind in kinds for name, unit in COLUMN_UNITS.items() if unit.measures == kind)
 
 

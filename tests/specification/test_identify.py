@@ -78,8 +78,12 @@ def test_known_and_free_must_agree(rig, capsys):
     assert re.search(r"zeta +0.01 +held", capsys.readouterr().out)
     free = 'fit.free=["f_n", "zeta", "x_F", "X0", "t0", "centre"]'
     assert "cannot fit zeta: [known] holds it" in refusal(capsys, "identify", path, "--set", free)
-    message = refusal(capsys, "identify", path, "--set", 'fit.free=["f_n", "x_F"]')
-    assert "cannot hold X0: its value is missing" in message
+    message = refusal(capsys, "identify", path, "--set", 'fit.free=["f_n"]')
+    assert "cannot hold x_F: its value is missing" in message
+    few = 'fit.free=["f_n", "x_F"]'  # where and when it starts need not be named
+    assert main(["identify", str(path), "--quiet", "--overwrite", "--set", few]) == 0
+    message = refusal(capsys, "identify", path, "--overwrite", "--set", 'fit.free=["f_n", "x_F", "offset"]')
+    assert "fit.free must be one of f_n, zeta, x_F, X0, t0, centre; got 'offset'" in message
 
 
 def test_a_window_leaves_out_the_rest(rig, capsys):

@@ -531,7 +531,7 @@ identify rig.toml --set data.file=words.csv
 identify rig.toml --set data.file=bare.csv
     file bare.csv, column time: its name must end in a unit, _s, _ms, _us, _min; got none (or write columns = { time = { name = "time", unit = "s" } } below [data])
 identify rig.toml --set data.fil=a.csv
-    data.kind = 'free-decay': unknown key 'data.fil' (did you mean file?); valid: kind, file, columns, decimal, missing, window
+    data.kind = 'free-decay': unknown key 'data.fil' (did you mean file?); valid: kind, file, columns, decimal, missing, window, filter, ac_coupling_Hz, mask_s
 identify rig.toml --set data.missing=ignore
     data.missing must be one of refuse, drop; got 'ignore'
 identify rig.toml --set data.columns=x
@@ -539,7 +539,7 @@ identify rig.toml --set data.columns=x
 identify rig.toml --set 'data.columns={y="x_mm"}'
     unknown key 'data.columns.y'; valid: time, x
 identify rig.toml --set 'data.columns={x="y_mm"}'
-    cannot read free-decay.csv: column y_mm (suffixes: _mm, _m, _um, _in, _cm, _ft) is missing, named by data.columns.x; the file has time_s, x_mm (did you mean x_mm?)
+    cannot read free-decay.csv: column y_mm (suffixes: _mm, _m, _um, _in, _cm, _ft, _m_s, _mm_s, _cm_s, _in_s, _m_s2, _mm_s2, _g, _cm_s2, _in_s2, _deg, _rad, _mrad) is missing, named by data.columns.x; the file has time_s, x_mm (did you mean x_mm?)
 identify rig.toml --set data.window=[1]
     file free-decay.csv, columns time_s and x_mm: window must be two times; got [1]
 identify rig.toml --set data.window=[50,60]
@@ -547,7 +547,7 @@ identify rig.toml --set data.window=[50,60]
 identify rig.toml --set data.window=[0,0.1]
     file free-decay.csv, columns time_s and x_mm: cannot estimate damping: record too short, fewer than 3 extrema in 21 samples; measure more cycles
 identify rig.toml --set known.mu=1
-    data.kind = 'free-decay': unknown key 'known.mu'; valid: f_n, zeta, x_F, X0, t0, centre, base_mm, stiffness
+    data.kind = 'free-decay': unknown key 'known.mu'; valid: f_n, zeta, x_F, X0, t0, centre, offset, base_mm, stiffness
 identify rig.toml --set known.zeta=1.2
     file free-decay.csv, columns time_s and x_mm: known.zeta must be < 1 for a decay with turning points; got 1.2
 identify rig.toml --set known.f_n=0
@@ -559,7 +559,7 @@ identify rig.toml --set 'known={f_n=3,zeta=0,x_F=0.1,X0=9,t0=0,centre=0}'
 identify rig.toml --set 'fit.free=["f_n"]'
     cannot hold zeta: its value is missing; add zeta to fit.free or known.zeta to [known]
 identify rig.toml --set 'fit.free=["mass"]'
-    fit.free[0] must be one of f_n, zeta, x_F, X0, t0, centre; got 'mass'
+    fit.free[0] must be one of f_n, zeta, x_F, X0, t0, centre, offset; got 'mass'
 identify rig.toml --set known.f_n=3 --set 'fit.free=["f_n","zeta","x_F","X0","t0","centre"]'
     cannot fit f_n: [known] holds it; remove it from fit.free or from [known]
 identify rig.toml --set fit.drift=1
@@ -593,7 +593,7 @@ identify record.toml --set system.zeta=0.1
 identify record.toml --set 'data.columns={base="x_mm",x="base_mm"}'
     file record.csv, columns time_s, x_mm and base_mm: x must lag behind the base by 0 to 180 degrees; got a lead of 25.22 (are the columns exchanged, or is one of opposite sign?)
 identify rig.toml --set known.beta=0.2
-    data.kind = 'free-decay': unknown key 'known.beta' (did you mean zeta?); valid: f_n, zeta, x_F, X0, t0, centre, base_mm, stiffness
+    data.kind = 'free-decay': unknown key 'known.beta' (did you mean zeta?); valid: f_n, zeta, x_F, X0, t0, centre, offset, base_mm, stiffness
 identify rig.toml --set known.f_n=-3
     file free-decay.csv, columns time_s and x_mm: known.f_n must be > 0; got -3.0
 identify rig.toml --set known.stiffness=0
@@ -757,7 +757,7 @@ fm.identify.free_decay(TIME, np.sin(1e3 * TIME))
 fm.identify.free_decay(TIME, np.exp(TIME) * np.cos(20 * TIME))
     cannot fit x as a free decay: its amplitude grows (swings grow from 2.541 to 94.18); choose a window of one decay
 fm.identify.free_decay(TIME, DECAY, unit="inch")
-    unit must be one of mm, m, um, in, cm, ft; got 'inch'
+    unit must be one of mm, m, um, in, cm, ft, m/s, mm/s, cm/s, in/s, m/s^2, mm/s^2, g, cm/s^2, in/s^2, deg, rad, mrad; got 'inch' (did you mean in?)
 fm.identify.free_decay(TIME, DECAY, known={"mass": 1.0})
     known must be one of f_n, zeta, x_F, X0, t0, centre; got 'mass'
 fm.identify.free_decay(TIME, DECAY, known={"zeta": -0.1})

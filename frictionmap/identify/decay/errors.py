@@ -34,7 +34,7 @@ def decay_solution(record: Record, fit: DecayFit) -> Solution:
     """The named parameters, and the residuals of the decay alone: a wander of the zero stays in them."""
     named = len(record.names)
     values = fit.solution.values.copy()
-    values[named:] = 0.0
+    values[record.steady :] = 0.0
     residual, slopes = fit.plain.residuals(values)
     return Solution(values[:named], residual, slopes[:, :named], fit.solution.at_bound[:named])
 

@@ -1,34 +1,36 @@
 """Natural frequency, viscous damping and friction force from the free decay of one mass."""
 
 from collections.abc import Mapping, Sequence
+from typing import Unpack
 
 import numpy as np
 import xarray as xr
 
 from ... import checks
 from ...errors import InputError
-from ...units.table import checked_unit, conversion
 from ..parameters import checked_known, unit_of
 from ..signals.plateaus import unclipped
 from ..signals.samples import checked_record, largest_gap, within
 from ..signals.turning_points import (
     TurningPoints,
-    linear_decrement,
     noise_level,
     resolution,
     without_spikes,
 )
 from ..statistics.cautions import autocorrelation_warnings, bound_warnings, correlation_warnings
-from ..statistics.estimates import estimates, number, verdict, with_error
+from ..statistics.estimates import estimates, number, verdict
 from ..statistics.least_squares import Errors
 from ..statistics.levels import FOUND
 from ..statistics.robust import LOSSES
 from .checks import check_misfit, checked_turning_points
+from .electronics import Electronics, Signal, kept_samples, points_of_motion, signal_of
 from .errors import decay_errors, decay_solution
 from .fit import DecayFit, fit_decay, noise_variance
 from .motion import PARAMETERS
-from .problem import DRIFT, X_F, ZETA, Record
+from .problem import DRIFT, OFFSET, X_F, ZETA, Record
+from .results import results, scaled
 from .rounding import rounding_weights
+from .starts import usual_half
 from .wander import Search, search
 
 #: Codes of what was found, in order.
@@ -39,7 +41,12 @@ _VERDICTS = {
     "both_found": "friction and viscous damping found",
 }
 
+#: Fits of samples beside which others are left out: the first shows where, further ones move that a little.
+_MASKINGS = 3
+
 _LOSS = "growth of the sum of squares without {}, over the variance of a sample"
+
+_NO_REST = "{} shows neither the centre nor the final position: offset is the zero of the signal"
 
 _IMPOSSIBLE = (
     "in the best fit the mass leaves a turning point at which friction would hold it, so mu has no bounds: "
@@ -53,6 +60,7 @@ _MEANINGS = {
     "X0": "turning point at t0, from the centre",
     "t0": "time of a turning point at the beginning",
     "centre": "place of the unloaded mass",
+    OFFSET: "what is measured of a mass at rest",
     DRIFT: "of the measured place of the unloaded mass",
 }
 
@@ -68,6 +76,7 @@ def free_decay(
     window: object = None,
     drift: bool = False,
     loss: str = "linear",
+    **electronics: Unpack[Electronics],
 ) -> xr.Dataset:
     """Fit the exact decay with Coulomb and viscous friction to all samples of a record.
 
@@ -76,11 +85,14 @@ def free_decay(
     time : array, shape (samples,)
         Times [s], increasing; equal steps are not needed.
     x : array, shape (samples,)
-        Displacements of the mass, in `unit`.
-    unit : "mm", "m" or "um"
-        Of `x`, and of every length that is given or returned.
+        Motion of the mass, in `unit`.
+    unit : str
+        Of `x`: a length ("mm", "m", "um"), an angle ("deg", "rad"), a velocity ("mm/s", "m/s") or an
+        acceleration ("m/s^2", "g"), or another unit of these.  Lengths that are given or returned are in the
+        unit of the length or angle, in mm for velocities and accelerations.
     known : mapping
-        Parameters to be held: f_n [Hz] > 0, zeta in [0, 1), x_F >= 0, X0, t0 [s], centre.  Others are fitted.
+        Parameters to be held: f_n [Hz] > 0, zeta in [0, 1), x_F >= 0, X0, t0 [s], centre or offset [`unit`].
+        Others are fitted.
     base : float
         Amplitude Y > 0 of a base motion; gives the friction ratio beta = x_F/Y.
     stiffness : float
@@ -92,6 +104,13 @@ def free_decay(
         centre + drift t.
     loss : "linear" or "soft_l1"
         What residuals cost: their squares, or less beyond the level of the noise, for outliers.
+    filter : mapping
+        A low-pass filter that the signal passed: kind "low-pass", order 1 or 2 (Butterworth), frequency_Hz.
+    ac_coupling_Hz : float
+        Corner frequency of an AC coupling of first order that it passed.
+    mask_s : [before, after]
+        Times [s] before and after each turning point that are left out, for a filter of linear phase (FIR)
+        that is not known: half its length.
 
     Returns
     -------
@@ -106,6 +125,9 @@ def free_decay(
         for rounding errors of a coarse converter, which samples at one place have in common.  Where the zero
         wanders slowly, a polynomial of time is fitted beside the decay (`wander_terms`, `wander_rms`); model
         and residual are of the decay alone.
+        Other signals than displacements have an `offset` [`unit`] in place of the centre.  Velocities and
+        accelerations also give `friction_over_mass`, but no `rest`.  Samples beside jumps of an acceleration
+        that passed no low-pass filter are left out.
 
     Raises
     ------
@@ -117,13 +139,15 @@ def free_decay(
     -----
     Distances of the extrema from the centre follow A_{j+1} = q A_j - (1 + q) x_F with
     q = exp(-pi zeta/sqrt(1 - zeta^2)), T(4.2) without viscous damping; the mass rests from the first
-    A_j <= mu x_F.  The number of half cycles before rest is an unknown of the fit.
+    A_j <= mu x_F.  The number of half cycles before rest is an unknown of the fit.  The velocity or the
+    acceleration of the exact motion is fitted to what was measured, which is not integrated; the states of
+    filters at the first sample are further unknowns.
     """
-    checked_unit(unit, "length", "unit")
+    signal = signal_of(unit, electronics)
     if not isinstance(drift, bool):
         raise InputError(f"drift must be true or false; got {checks.one_line(drift)}")
     checks.choice(loss, "loss", LOSSES)
-    names = (*PARAMETERS, DRIFT) if drift else PARAMETERS
+    names = _names(signal, drift)
     held = _held(known or {}, names)
     times, places = checked_record(time, x)
     inside = within(window, times)
@@ -132,33 +156,55 @@ def free_decay(
     t, data = times[good], places[good]
     points = checked_turning_points(t, without_spikes(data) if loss == "soft_l1" else data)
     outliers = noise_level(data) if loss == "soft_l1" else 0.0
-    searched = _searched(Record(t, data, held, names, outliers or None), points)  # exact data have none
+    record = Record(t, data, held, names, outliers or None)  # exact data have none
+    if signal.sensor is not None:
+        points = points_of_motion(points, signal.sensor, usual_half(points))
+    searched = _masked(record._replace(sensor=signal.sensor), points, signal)
     record, fits = searched.record, searched.fits
     fit = fits[0]
+    t, data = record.time, record.x
     if not held:  # a value that is held may be wrong on purpose
         check_misfit(data, float(np.sqrt(fit.solution.sum / data.size)))
     found, solution = decay_errors(searched), decay_solution(record, fit)
     losses = _losses(record, points, fit)
     meanings = {name: _MEANINGS[name] for name in names}
-    units = [unit_of(name, unit) for name in names]
-    ds = estimates(meanings, units, solution, found, record.free[: len(names)], data, unit)
+    units = [unit_of(name, signal.length, signal.unit) for name in names]
+    ds = estimates(meanings, units, solution, found, record.free[: len(names)], data, signal.unit)
     ds["time"] = xr.Variable("sample", t, {"long_name": "time", "units": "s"})
     ds["verdict"] = verdict(_verdict(fit, found, losses), _VERDICTS)
     ds["likelihood_ratio_friction"] = number(losses["x_F"], _LOSS.format("friction"))
     ds["likelihood_ratio_viscous"] = number(losses["zeta"], _LOSS.format("viscous damping"))
-    decrement = linear_decrement(points)
-    if decrement is not None:
-        ds["linear_decrement"] = number(
-            decrement, "x_F by the linear decrement T(4.3), true if zeta = 0", unit
-        )
-    ds = (
-        ds.assign(_motion(fits, unit))
-        .assign(_wander(record, fit, unit))
-        .assign(_scaled(fit, found, unit, base, stiffness))
-    )
+    ds = ds.assign(results(record, fits, found, signal, points))
+    ds = ds.assign(scaled(fit, found, signal, base, stiffness))
+    if signal.leaves_out:
+        words = {"long_name": "samples left out beside turning points"}
+        ds["samples_left_out"] = xr.Variable((), np.int32(good.sum() - t.size), words)
     ds.attrs["title"] = "Free decay"
-    ds.attrs["warnings"] = "; ".join(_warnings(times, good, searched, found))
+    ds.attrs["warnings"] = "; ".join(_warnings(times, good, searched, found, signal))
+    ds.attrs |= signal.attributes
     return ds
+
+
+def _names(signal: Signal, drift: bool) -> tuple[str, ...]:
+    """Parameters: of a signal that does not show the centre its offset."""
+    last = PARAMETERS[-1] if signal.shows_centre else OFFSET
+    return (*PARAMETERS[:-1], last, *((DRIFT,) if drift else ()))
+
+
+def _masked(record: Record, points: TurningPoints, signal: Signal) -> Search:
+    """Fits without the samples beside jumps, which the fit of all samples shows first."""
+    kept = np.ones(record.time.size, dtype=bool)
+    for _ in range(_MASKINGS):
+        some = record._replace(time=record.time[kept], x=record.x[kept])
+        if record.sensor is not None:
+            some = some._replace(transients=record.sensor.transients(some.time))
+        found, before = _searched(some, points), kept
+        kept = kept_samples(
+            signal, found.fits[0].decay, max(one.half_cycles for one in found.fits), record.time
+        )
+        if (kept == before).all():
+            break
+    return found
 
 
 def _searched(record: Record, points: TurningPoints) -> Search:
@@ -203,70 +249,11 @@ def _verdict(fit: DecayFit, found: Errors, losses: Mapping[str, float]) -> int:
     return int(friction) + 2 * int(damping)
 
 
-def _motion(fits: list[DecayFit], unit: str) -> dict[str, xr.Variable]:
-    """Number of half cycles, place of rest, and the bounds of mu that follow."""
-    fit = fits[0]
-    bounds = np.array([_bounds_of_mu(one) for one in fits])
-    lower, upper = bounds[:, 0].min(), bounds[:, 1].max()
-    result = {
-        "half_cycles": xr.Variable(
-            (), np.int32(fit.half_cycles), {"long_name": "half cycles before rest, or begun in the record"}
-        ),
-        "at_rest": xr.Variable((), np.int8(fit.at_rest), {"long_name": "1 if it came to rest in the record"}),
-        "mu_lower": number(lower, "static over kinetic friction is at least this, as it rests where it does"),
-        "mu_upper": number(
-            upper, "static over kinetic friction is below this, as it left the turning point before"
-        ),
-    }
-    if fit.at_rest:
-        heights = fit.heights
-        side = np.sign(fit.decay.X0) * (-1.0) ** fit.half_cycles
-        result["rest"] = number(fit.decay.centre + side * float(heights[-1]), "place of rest", unit)
-    return result
-
-
-def _bounds_of_mu(fit: DecayFit) -> tuple[float, float]:
-    """Least and largest mu, from where the mass came to rest and which turning point it left last."""
-    heights, friction = fit.heights, fit.decay.x_F
-    if friction == 0.0 or not fit.possible:
-        return 0.0, np.inf
-    passed = heights[:-1] if fit.at_rest else heights
-    return abs(float(heights[-1])) / friction if fit.at_rest else 0.0, float(passed[-1]) / friction
-
-
-def _wander(record: Record, fit: DecayFit, unit: str) -> dict[str, xr.Variable]:
-    """The wander of the zero that was fitted, if there is one."""
-    if record.wander is None or not record.terms:
-        return {}
-    slow = record.wander @ fit.solution.values[len(record.names) :]
-    return {
-        "wander_terms": xr.Variable(
-            (), np.int32(record.terms), {"long_name": "terms of the polynomial that the zero follows"}
-        ),
-        "wander_rms": number(float(np.std(slow)), "slow wander of the zero, root mean square", unit),
-    }
-
-
-def _scaled(
-    fit: DecayFit, found: Errors, unit: str, base: float | None, stiffness: float | None
-) -> dict[str, xr.Variable]:
-    """x_F as a friction ratio and as a force, with its error."""
-    scales: list[tuple[str, str, str, float]] = []
-    if base is not None:
-        scales.append(("beta", "friction ratio x_F/Y", "1", 1.0 / checks.number(base, "base", above=0.0)))
-    if stiffness is not None:
-        newtons = checks.number(stiffness, "stiffness", above=0.0) * conversion(unit, "m")
-        scales.append(("friction_force", "kinetic friction force k x_F", "N", newtons))
-    x_F, error = fit.decay.x_F, float(found.standard_error[X_F])  # noqa: N806
-    result: dict[str, xr.Variable] = {}
-    for name, words, units, scale in scales:
-        result |= with_error(name, scale * x_F, scale * error, words, units, f"standard error of {name}")
-    return result
-
-
-def _warnings(time: np.ndarray, good: np.ndarray, searched: Search, found: Errors) -> list[str]:
+def _warnings(
+    time: np.ndarray, good: np.ndarray, searched: Search, found: Errors, signal: Signal
+) -> list[str]:
     """Warnings about a fit."""
-    words = []
+    words = [] if signal.shows_rest else [_NO_REST.format(signal.description)]
     if not good.all():
         words.append(f"clipped: {1.0 - good.mean():.1%} of the samples are at the extremes and were left out")
     if gap := largest_gap(time):

@@ -87,7 +87,7 @@ def displacement_and_slopes(decay: Decay, n: int, time: np.ndarray) -> tuple[np.
     u = np.where(j < n, phase - j * np.pi / d, 0.0)
     moving = j < n
     s = sign * np.where(j % 2 == 0, 1.0, -1.0)
-    height, by_zeta, by_friction, by_first = _turning_points(decay, n)
+    height, by_zeta, by_friction, by_first = turning_point_slopes(decay, n)
     g, g_u, g_zeta = _half_cycle(u, decay.zeta)
     away = height[j] - decay.x_F
     place = s * np.where(moving, decay.x_F + away * g, height[j])
@@ -110,7 +110,7 @@ def _ratio(zeta: float) -> tuple[float, float]:
     return q, -np.pi * q / d**3
 
 
-def _turning_points(decay: Decay, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def turning_point_slopes(decay: Decay, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """A_0..A_n, and their derivatives by zeta, x_F and A_0."""
     q, slope = _ratio(decay.zeta)
     height = amplitudes(decay, n)

@@ -9,15 +9,21 @@ from numpy.polynomial import legendre
 
 from ..statistics.least_squares import Problem
 from ..statistics.robust import soften
+from .electronics import sensor_in
+from .measured import measured_and_slopes
 from .motion import PARAMETERS, Decay, displacement_and_slopes
+from .sensor import Sensor
 
 #: The measured place of the centre may change by so much a second.
 DRIFT = "drift"
 
-#: In these the motion is linear.
-_LINEAR = ("x_F", "X0", "centre", DRIFT)
+#: What a sensor shows of a mass at rest takes the place of the centre, which such a sensor does not show.
+OFFSET = "offset"
 
-ZETA, X_F = PARAMETERS.index("zeta"), PARAMETERS.index("x_F")
+#: In these the motion is linear.
+_LINEAR = ("x_F", "X0", "centre", OFFSET, DRIFT)
+
+F_N, ZETA, X_F = (PARAMETERS.index(name) for name in ("f_n", "zeta", "x_F"))
 
 #: Half cycles of a decay that does not come to rest within any record.
 _NO_REST = 2
@@ -41,13 +47,18 @@ class Record(NamedTuple):
         None  # shape (samples, terms): slow functions of time that the zero may follow
     )
     weights: np.ndarray | None = None  # (samples,) of the residuals, below 1 where rounding errors are alike
+    sensor: Sensor | None = None  # None: displacements as they are
+    transients: np.ndarray | None = None  # shape (samples, states): of the filters of the sensor
 
     def thinned(self, most: int) -> "Record":
         """The record with no more samples than `most`, or a few."""
         every = max(1, self.time.size // most)
         wander = None if self.wander is None else self.wander[::every]
         weights = None if self.weights is None else self.weights[::every]
-        return self._replace(time=self.time[::every], x=self.x[::every], wander=wander, weights=weights)
+        transients = None if self.transients is None else self.transients[::every]
+        return self._replace(
+            time=self.time[::every], x=self.x[::every], wander=wander, weights=weights, transients=transients
+        )
 
     @property
     def counted(self) -> float:
@@ -60,20 +71,26 @@ class Record(NamedTuple):
         return np.ones(self.time.size, dtype=bool) if self.weights is None else self.weights == 1.0
 
     @property
+    def steady(self) -> int:
+        """Unknowns without a wander: the named ones, and states of filters at the first sample."""
+        return len(self.names) + (0 if self.transients is None else self.transients.shape[1])
+
+    @property
     def terms(self) -> int:
-        """Unknowns after the named ones: the terms of the wander."""
+        """Unknowns after these: the terms of the wander."""
         return 0 if self.wander is None else self.wander.shape[1]
 
     @property
     def free(self) -> np.ndarray:
         """Unknowns that are fitted, bool (unknowns,)."""
         named = [name not in self.known for name in self.names]
-        return np.array(named + [True] * self.terms)
+        return np.array(named + [True] * (self.steady - len(named) + self.terms))
 
     @property
     def linear(self) -> np.ndarray:
         """Unknowns in which the motion is linear, bool (unknowns,)."""
-        return np.concatenate((np.isin(self.names, _LINEAR), np.ones(self.terms, dtype=bool)))
+        further = np.ones(self.steady - len(self.names) + self.terms, dtype=bool)
+        return np.concatenate((np.isin(self.names, _LINEAR), further))
 
 
 def record_of(ds: xr.Dataset, names: tuple[str, ...]) -> tuple[Record, int, np.ndarray]:
@@ -86,9 +103,14 @@ def record_of(ds: xr.Dataset, names: tuple[str, ...]) -> tuple[Record, int, np.n
     known = {name: float(value) for name, value, is_held in zip(names, values, held, strict=True) if is_held}
     terms = int(ds["wander_terms"]) if "wander_terms" in ds else 0
     wander = polynomials(ds["time"].values, names, terms) if terms else None
-    record = Record(ds["time"].values, ds["data"].values, known, names, wander=wander)
+    time = ds["time"].values
+    sensor = sensor_in(ds)
+    transients = None if sensor is None else sensor.transients(time)
+    record = Record(
+        time, ds["data"].values, known, names, wander=wander, sensor=sensor, transients=transients
+    )
     n = int(ds["half_cycles"]) + (0 if int(ds["at_rest"]) else _NO_REST)
-    return record, n, np.concatenate((values, np.zeros(terms)))
+    return record, n, np.concatenate((values, np.zeros(record.free.size - values.size)))
 
 
 def polynomials(time: np.ndarray, names: Sequence[str], terms: int) -> np.ndarray:
@@ -99,11 +121,17 @@ def polynomials(time: np.ndarray, names: Sequence[str], terms: int) -> np.ndarra
 
 
 def model(record: Record, n: int, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Places of a decay that ends at turning point `n`, and their slopes by all unknowns."""
-    place, slopes = displacement_and_slopes(Decay(*values[: len(PARAMETERS)]), n, record.time)
+    """What is measured of a decay that ends at turning point `n`, and its slopes by all unknowns."""
+    decay, sensor = Decay(*values[: len(PARAMETERS)]), record.sensor
+    if sensor is None:
+        place, slopes = displacement_and_slopes(decay, n, record.time)
+    else:
+        place, slopes = measured_and_slopes(sensor, decay, n, record.time)
     further = [slopes]
     if len(record.names) > len(PARAMETERS):
         further.append(record.time[:, np.newaxis])
+    if record.transients is not None:
+        further.append(record.transients)
     if record.wander is not None:
         further.append(record.wander)
     slopes = np.concatenate(further, axis=1) if len(further) > 1 else slopes

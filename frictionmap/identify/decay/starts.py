@@ -62,10 +62,10 @@ def for_refining(record: Record) -> Record:
 
 def starts(record: Record, points: TurningPoints) -> list[Start]:
     """The best start for each number of half cycles before rest, and for no rest, by their sums."""
-    half = _half_period(points)
+    half = usual_half(points)
     found = [
         start
-        for release in _releases(record.time, points, half)
+        for release in _releases(record, points, half)
         for start in _starts_after_release(record, release, half)
     ]
     different: list[Start] = []
@@ -81,7 +81,7 @@ def _alike(one: Start, other: Start, half: float) -> bool:
     return one.n == other.n and abs(one.values[t0] - other.values[t0]) < 0.5 * half
 
 
-def _half_period(points: TurningPoints) -> float:
+def usual_half(points: TurningPoints) -> float:
     """Half a period [s], by a line through the times of turning points that follow each other regularly."""
     run = regular_run(points)
     number, time = points.number[run], points.time[run]
@@ -90,8 +90,9 @@ def _half_period(points: TurningPoints) -> float:
     return float(np.polyfit(number, time, 1)[0])
 
 
-def _releases(time: np.ndarray, points: TurningPoints, half: float) -> list[_Release]:
+def _releases(record: Record, points: TurningPoints, half: float) -> list[_Release]:
     """Turning points from which the record may follow the decay."""
+    time = record.time
     first = float(np.median(points.time - points.number * half))  # a release is seen too late
     last, up = int(points.number[-1]), 1.0 if points.upper[0] else -1.0
     if first < time[0]:  # noise at the beginning, not a turning point
@@ -100,7 +101,9 @@ def _releases(time: np.ndarray, points: TurningPoints, half: float) -> list[_Rel
     earliest = 1
     if hides_turning_points(time[time <= points.time[0]], half):  # or with others, which a gap hides
         earliest = max(1, int(np.ceil((first - time[0]) / half)))
-    return [_Release(first - k * half, up * (-1.0) ** k, last + k) for k in range(earliest + 1)]
+    # what a velocity or an acceleration shows of a held mass is an extreme of its noise, no turning point
+    latest = -1 if record.sensor is not None and record.sensor.order else 0
+    return [_Release(first - k * half, up * (-1.0) ** k, last + k) for k in range(latest, earliest + 1)]
 
 
 def _starts_after_release(record: Record, release: _Release, half: float) -> list[Start]:
@@ -125,7 +128,7 @@ def _guesses(record: Record, release: _Release, half: float) -> list[np.ndarray]
     """Unknowns, of which only those that are not linear count, for several damping ratios."""
     known, guesses = record.known, []
     for zeta in [known["zeta"]] if "zeta" in known else _DAMPINGS:
-        guess = np.zeros(len(record.names) + record.terms)
+        guess = np.zeros(record.free.size)
         f_n = 0.5 / (half * np.sqrt(1.0 - zeta**2))
         guess[: len(PARAMETERS)] = known.get("f_n", f_n), zeta, 0.0, release.sign, release.t0, 0.0
         guesses.append(guess)

@@ -73,10 +73,12 @@ def _wander(record: Record, fit: DecayFit) -> _Wander:
     """Slow functions of time that the residuals of a decay follow best."""
     basis = polynomials(record.time, record.names, _most_terms(record, fit))
     wide = record._replace(wander=basis)
-    named = len(record.names)
-    values = np.concatenate((fit.solution.values[:named], np.zeros(basis.shape[1])))
+    steady = record.steady
+    values = np.concatenate((fit.solution.values[:steady], np.zeros(basis.shape[1])))
     residual, slopes = problem(wide, fit.n, values).residuals(values)
-    fitted = wide.free & np.concatenate((~fit.solution.at_bound[:named], np.ones(basis.shape[1], dtype=bool)))
+    fitted = wide.free & np.concatenate(
+        (~fit.solution.at_bound[:steady], np.ones(basis.shape[1], dtype=bool))
+    )
     directions = np.linalg.qr(slopes[:, fitted])[0]
     shares = directions.T @ residual
     left = residual - directions @ shares

@@ -58,6 +58,7 @@ _LABEL = Key("label", "name in the results; default: its number", {"type": "stri
 
 _FREE = Key(
     "free", "parameters to fit; must be all that are not in [known], which is the default; "
+    "X0, t0, centre and offset of a decay need not be named; "
     "contact_stiffness, delay and gain may be named, or are fitted where one of them explains the data",
     several({"type": "string"}), example='["f_n", "zeta", "x_F", "X0", "t0", "centre"]',
     words="a list of parameters",

@@ -21,6 +21,13 @@ def number(value: float, long_name: str, units: str = "1") -> xr.Variable:
     return xr.Variable((), float(value), {"long_name": long_name, "units": units})
 
 
+def _squared(unit: str) -> str:
+    """The square of a unit."""
+    if unit == "1":
+        return unit
+    return f"({unit})^2" if "/" in unit else f"{unit}2"
+
+
 def with_error(
     name: str, value: float, error: float, words: str, units: str, words_of_error: str = ""
 ) -> dict[str, xr.Variable]:
@@ -134,7 +141,7 @@ def estimates(
         "reduced_chi_square": number(
             errors.variance,
             "reduced chi square: squares of residuals, over given errors if any, per degree of freedom",
-            "1" if data_unit == "1" else f"{data_unit}2",
+            _squared(data_unit),
         ),
         "residual_rms": number(
             np.sqrt(np.mean(solution.residual**2)), "root mean square of residuals", data_unit

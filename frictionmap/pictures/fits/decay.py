@@ -7,7 +7,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from ...errors import InputError
+from ...identify.decay.electronics import SENSOR
 from ...identify.decay.motion import PARAMETERS, Decay, amplitudes, displacement, envelope, half_period
+from ...units.table import UNITS
 from ..palette import CLASSES, STUCK
 from ..panels import Handle
 from .data import FITTED, Samples, draw_data, draw_residuals, in_brackets, samples_of
@@ -16,6 +18,9 @@ from .samples import RESIDUALS, VALUES
 
 #: Samples of a half cycle of the fitted curve; half cycles that a picture can show.
 _SAMPLES, _MOST_HALVES = 40, 400
+
+#: Parameters that are the centre: of a displacement, of an angle.
+_ZEROS = (PARAMETERS[-1], "offset")
 
 _ENVELOPE_COLOUR = "#bd7f50"
 
@@ -31,8 +36,10 @@ class _Motion(NamedTuple):
 
 
 def is_decay(ds: xr.Dataset) -> bool:
-    """Whether all is there that a fitted decay needs."""
-    return set(PARAMETERS) <= set(ds["parameter"].values.tolist()) and {"time", "half_cycles"} <= set(ds)
+    """Whether all is there that a fitted decay needs, and the displacement or angle itself was measured."""
+    names = set(ds["parameter"].values.tolist())
+    measured_as_it_is = SENSOR not in ds.attrs and not names.isdisjoint(_ZEROS)
+    return set(PARAMETERS[:-1]) <= names and {"time", "half_cycles"} <= set(ds) and measured_as_it_is
 
 
 def decay_picture(ds: xr.Dataset) -> FitPicture:
@@ -40,7 +47,9 @@ def decay_picture(ds: xr.Dataset) -> FitPicture:
     samples, motion = samples_of(ds), _motion_of(ds)
 
     def values(ax: Axes) -> list[Handle]:
-        ax.set_ylabel(f"displacement{in_brackets(samples.unit)}")
+        unit = UNITS.get(samples.unit)
+        what = "angle" if unit is not None and unit.measures == "angle" else "displacement"
+        ax.set_ylabel(f"{what}{in_brackets(samples.unit)}")
         return [*_draw_friction(ax, motion), *_draw_record(ax, samples, motion), *_draw_rest(ax, motion)]
 
     def residuals(ax: Axes) -> list[Handle]:
@@ -51,7 +60,8 @@ def decay_picture(ds: xr.Dataset) -> FitPicture:
 
 def _motion_of(ds: xr.Dataset) -> _Motion:
     values = dict(zip(ds["parameter"].values.tolist(), ds["estimate"].values.tolist(), strict=True))
-    decay = Decay(*(values[name] for name in PARAMETERS))
+    zero = next(values[name] for name in _ZEROS if name in values)
+    decay = Decay(*[values[name] for name in PARAMETERS[:-1]] + [zero])
     if decay.f_n <= 0.0 or abs(decay.zeta) >= 1.0:
         raise InputError(
             f"a decay must have f_n > 0 and zeta < 1 to be drawn; got {decay.f_n:g}, {decay.zeta:g}"

@@ -237,6 +237,18 @@ def test_an_unknown_argument_is_no_filter():
         fm.identify.free_decay(time, x, ac_coupling=0.3)
 
 
+def test_what_a_slow_coupling_hides_is_refused():
+    """A coupling of 1e-4 Hz answers within 3.2 s with a + b t and next to nothing else: offset and drift."""
+    time, x = record("m/s^2")
+    slow = {"unit": "m/s^2", "ac_coupling_Hz": 1e-4}
+    with pytest.raises(fm.InputError, match="does not tell offset and drift from the state of the filters"):
+        fm.identify.free_decay(time, x, drift=True, **slow)
+    held = fm.identify.free_decay(time, x, drift=True, known={"drift": 0.0}, **slow)
+    plain = fm.identify.free_decay(time, x, unit="m/s^2")
+    for name in ("f_n", "x_F"):  # the coupling does not act within the record
+        assert abs(off(held, name, float(plain.estimate.sel(parameter=name)))) < 0.1
+
+
 SETS = ["acc-plain", "acc-lp1", "acc-lp2", "acc-ac", "acc-mask", "vel", "vel-ac", "angle"]
 
 

@@ -3,7 +3,6 @@
 ===========  ========================================================================
 module       what is in it
 ===========  ========================================================================
-checks       whether a record is a free decay, and whether the fit follows it
 motion       the exact decay and its derivatives
 sensor       sensors of the motion, its velocity or acceleration, with their filters
 measured     what a sensor shows of a decay, and its derivatives
@@ -14,6 +13,7 @@ fit          the decay nearest to all samples
 wander       a slow wander of the measured zero
 rounding     errors that a coarse converter makes, alike in samples at one place
 errors       errors where noise is correlated, or hides the number of half cycles
+checks       whether a record is a free decay, and whether the fit follows it
 results      rest, bounds of mu, friction in other units
 free_decay   `free_decay`: from arrays to estimates
 part         a free decay as a part of a joint fit

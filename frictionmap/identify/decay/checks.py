@@ -14,11 +14,18 @@ from ..signals.turning_points import (
     undersampled,
     without_spikes,
 )
+from ..statistics.least_squares import undetermined
 from ..statistics.levels import MISFIT, MISFIT_SHARE
+from .fit import DecayFit
+from .problem import Record
 
 #: Correlated noise swings farther than that between samples suggests: turning points are sought beyond
 #: these multiples of the noise, until nearly all of them are half a period apart, but not with fewer points.
 _MORE_NOISE, _MOSTLY_REGULAR, _FEW = (2.0, 3.0, 4.0), 0.9, 5
+
+#: Slopes, each over its length, whose least singular value is below this share of the largest do not
+#: determine all unknowns: an error of a millionth, as of a corner frequency, would move them by all they are.
+_SEPARATE = 1e-6
 
 #: Spikes make turning points that are not half a period apart; noise and a mass that is held make few.
 _REGULAR = 0.5
@@ -92,3 +99,27 @@ def check_misfit(x: np.ndarray, rms: float) -> None:
             f"cannot fit x as a free decay: the residuals ({rms:.4g} rms) are far above the noise between "
             f"samples ({noise:.4g}); choose a window of one decay, without gaps, impacts or other motion"
         )
+
+
+def check_identifiable(record: Record, fit: DecayFit) -> None:
+    """Refuse a record that does not determine parameters separately.
+
+    Raises
+    ------
+    InputError
+        The samples see of several parameters, or of parameters and states of filters, only what they have
+        in common.
+    """
+    indices, _ = undetermined(fit.problem, fit.solution, _SEPARATE)
+    together = [record.names[index] for index in indices if index < len(record.names)]
+    if not together:
+        return
+    words = " and ".join(together)
+    if (indices >= len(record.names)).any() and record.sensor is not None:
+        raise InputError(
+            f"not identifiable: this record does not tell {words} from the state of the filters at its "
+            f"beginning; omit a filter that is too slow to be seen in it, or hold {together[-1]} in known"
+        )
+    raise InputError(
+        f"not identifiable: {words} cannot be determined together from this record; hold one of them in known"
+    )

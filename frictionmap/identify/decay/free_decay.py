@@ -22,7 +22,7 @@ from ..statistics.estimates import estimates, number, verdict
 from ..statistics.least_squares import Errors
 from ..statistics.levels import FOUND
 from ..statistics.robust import LOSSES
-from .checks import check_misfit, checked_turning_points
+from .checks import check_identifiable, check_misfit, checked_turning_points
 from .electronics import Electronics, Signal, kept_samples, points_of_motion, signal_of
 from .errors import decay_errors, decay_solution
 from .fit import DecayFit, fit_decay, noise_variance
@@ -133,7 +133,8 @@ def free_decay(
     ------
     InputError
         An argument is invalid, or the record is no free decay: no motion, fewer than 3 extrema, an amplitude
-        that grows, fewer than 8 samples per cycle, residuals far above the noise between samples.
+        that grows, fewer than 8 samples per cycle, residuals far above the noise between samples, or
+        parameters that it does not determine separately.
 
     Notes
     -----
@@ -165,6 +166,7 @@ def free_decay(
     t, data = record.time, record.x
     if not held:  # a value that is held may be wrong on purpose
         check_misfit(data, float(np.sqrt(fit.solution.sum / data.size)))
+    check_identifiable(record, fit)
     found, solution = decay_errors(searched), decay_solution(record, fit)
     losses = _losses(record, points, fit)
     meanings = {name: _MEANINGS[name] for name in names}

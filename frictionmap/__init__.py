@@ -83,6 +83,7 @@ if TYPE_CHECKING:
     from .steady.sweep import sweep
     from .stop_counts.dataset import borders
     from .theory.continuous_motion import continuous_motion
+    from .units.dimensions import system_in_units
     from .units.scales import Units
 
 __all__ = [
@@ -119,6 +120,7 @@ __all__ = [
     "response",
     "shares",
     "sweep",
+    "system_in_units",
 ]
 
 # Loaded when first used: numba, xarray and matplotlib together take most of a second to import, and
@@ -129,6 +131,7 @@ _HOME = {
     "Solver": "model.settings",
     "System": "model.system",
     "Units": "units.scales",
+    "system_in_units": "units.dimensions",
     "animate": "plot",
     "borders": "stop_counts.dataset",
     "boundaries": "steady.boundaries",

@@ -810,6 +810,7 @@ BESIDE = {
     "contact_name": Label(np.str_, "name of the contact", ("contact",)),
     "frequency": Label(np.float64, "excitation frequency", ("r",), least=0.0, units="Hz"),
     "friction_force": Label(np.float64, "kinetic friction force", ("beta",), least=0.0, units="N"),
+    "friction_coefficient": Label(np.float64, "coefficient of kinetic friction", ("beta",), least=0.0),
     "time": Label(np.float64, "time since a maximum of the load", ("tau",), least=0.0, units="s"),
 }
 

@@ -16,6 +16,9 @@ from .variables import coordinate
 #: Coordinate that holds an axis in its SI unit.
 BESIDE_OF = {"r": "frequency", "beta": "friction_force"}
 
+#: Coordinate that holds friction coefficients, where the normal force is known.
+COEFFICIENT = "friction_coefficient"
+
 
 def with_units(ds: xr.Dataset, scales: Scales) -> xr.Dataset:
     """Add `frequency(r)`, `friction_force(beta)`, and amplitudes, forces and work in SI units to a dataset.
@@ -42,6 +45,8 @@ def physical_axes(axes: Mapping[str, np.ndarray], scales: Scales) -> dict[str, x
         one = getattr(scales, kind_of_axis)
         if name in axes and one is not None:
             found[BESIDE_OF[name]] = coordinate(BESIDE_OF[name], typed(axes[name], one))
+    if "beta" in axes and scales.coefficient is not None:
+        found[COEFFICIENT] = coordinate(COEFFICIENT, typed(axes["beta"], scales.coefficient))
     return found
 
 

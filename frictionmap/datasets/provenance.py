@@ -33,6 +33,7 @@ _SYSTEM = {
     "mass_ratios": (1.0,),
     "stiffness_ratios": (1.0,),
     "damping_ratios": None,
+    "dampers": None,
     "rayleigh": None,
     "decouple": None,
     "frequency_scale": None,

@@ -13,6 +13,9 @@ from ..datasets.questions import record, records
 from ..errors import InputError
 from ..files.config import common_tables, design_table, further_axes, read_tree, unknown_key, within
 from ..files.variants import put_variants
+from ..units.axes import needs
+from ..units.dimensions import OF_DESIGN, wanted_axes
+from ..units.scales import Wanted, scales_of
 from .questions.record import Question
 from .samples import Samples
 
@@ -43,11 +46,13 @@ def load_design(path: str | Path, overrides: Sequence[str] = (), threads: int | 
     """
     tree, text = read_tree(path, overrides)
     path = Path(path)
-    common = common_tables(tree, path)
+    common = common_tables(tree, path, [*_wanted(tree), *wanted_axes(tree.get("axes", {}))])
     if "design" not in tree:
         raise InputError("the configuration must have a table [design]; got none")
     files = put_variants(tree.get("axes"), path.parent)
-    axes = further_axes(tree)
+    scales = scales_of(common.units, common.system)
+    scales.require(_wanted(tree))
+    axes = further_axes(tree, scales)
     given = design_table(tree)
     try:
         names = tuple(one.name for one in records())
@@ -59,6 +64,15 @@ def load_design(path: str | Path, overrides: Sequence[str] = (), threads: int | 
         arguments["threads"] = threads
     ask = partial(_call_question, question.function, common.system, {**arguments, "units": common.units})
     return Design(common.title, path.stem, text, (*common.files, *files), question.name, ask)
+
+
+def _wanted(tree: Mapping[str, Any]) -> list[Wanted]:
+    """The numbers with units of [design]."""
+    given = design_table(tree)
+    response = given.get("response")
+    quantity = response.get("quantity") if isinstance(response, Mapping) else response
+    kinds = OF_DESIGN | ({"limit": "force"} if quantity == "transmitted_force" else {})
+    return [one for key, kind in kinds.items() for one in needs(given.get(key), f"design.{key}", kind)]
 
 
 def _with_samples(question: str, arguments: dict[str, Any], axes: Mapping[str, Any] | None) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from ..errors import InputError
 from ..features import peak_thresholds
 from ..model.system import System
 from ..solvers.choose import has_closed_forms
-from ..units.axes import KINDS, ratios
+from ..units.axes import KINDS, ratios, require
 from ..units.scales import Scales, Units, scales_of
 from .band import Band, checked_band, peak_samples
 from .limits import Extreme, has_no_stop_limit, largest_stick, least_no_stop, starts_matter, stick_limit
@@ -90,6 +90,7 @@ def checked_task(
     """
     checks.instance(system, "system", System)
     scales = scales_of(units, system)
+    require(scales, band=(KINDS["r"], band), beta=(KINDS["beta"], beta))
     found = checked_band(band, scales)
     mu = checks.number(mu, "mu", least=1.0)
     asked = checked_response(system, *response)

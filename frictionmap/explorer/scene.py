@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..model.settings import Solver, Start
 from ..model.system import System
 from ..model.variations import named_number
-from ..units.axes import KINDS, ratios
+from ..units.axes import KINDS, ratios, require
 from ..units.scales import Units, scales_of
 from .contacts import contacts_of, put_contact
 from .scene_parts import Contact, Slider
@@ -111,6 +111,7 @@ def scene_of_system(
     mu = checks.number(mu, "mu", least=1.0)
     scales = scales_of(units, system)  # they may not go with it
     settings: Mapping[str, Any] = {"start": start}
+    require(scales, r=(KINDS["r"], r), beta=(KINDS["beta"], beta))
     ends = (
         checked_range(ratios(r, "r", KINDS["r"], scales), "r"),
         checked_range(ratios(beta, "beta", KINDS["beta"], scales), "beta"),

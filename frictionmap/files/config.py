@@ -5,6 +5,7 @@ import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import ROUND_CEILING, Decimal
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
@@ -17,8 +18,9 @@ from ..model.periodic_load import WAVEFORMS
 from ..model.settings import BORDERS, CurveSettings, Solver, curve_settings
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
-from ..units.axes import KINDS, Ladder, grid_ratios
-from ..units.scales import Scales, Units, scales_of
+from ..units.axes import KINDS, Ladder, grid_ratios, needs
+from ..units.dimensions import axes_in_ratios, chain_in_ratios, in_ratios, wanted_axes
+from ..units.scales import Scales, Units, Wanted, rounded, scales_of
 from .keys import AXES, KEYS, names
 from .variants import put_variants
 
@@ -31,6 +33,9 @@ _SECTIONS: dict[str, tuple[str, ...] | None] = {
     **{section: names(section) for section in KEYS if section},
     "axes": None,
 }
+#: Key of [grid] in the place of beta: friction over the normal force of [units].
+_COEFFICIENT = "friction_coefficient"
+
 _AXIS_KEYS = ("start", "stop", "step", "num", "values")
 #: Ways to give an axis exclude each other: on the command line, a key takes the place of these.
 _RIVALS = {
@@ -284,7 +289,8 @@ def _load(value: object, name: str) -> object:
 
 def read_system(table: Mapping[str, object], folder: Path) -> System:
     """The system of a table [system] in a configuration in that folder, checked."""
-    return _build(System, _system_table({"system": table}, folder), "system")
+    chain, _ = chain_in_ratios(_system_table({"system": table}, folder), {}, "system")
+    return _build(System, chain, "system")
 
 
 def system_in(text: str) -> System | None:
@@ -297,7 +303,7 @@ def system_in(text: str) -> System | None:
         table = _system_table(tree, Path())
         if "system" not in tree or _matrix_files(table):
             return None
-        return _build(System, table, "system")
+        return _build(System, chain_in_ratios(table, {})[0], "system")
     except InputError:
         return None
 
@@ -311,8 +317,10 @@ class Common(NamedTuple):
     files: tuple[Path, ...]  # that the configuration was read from
 
 
-def common_tables(tree: Mapping[str, object], path: Path) -> Common:
+def common_tables(tree: Mapping[str, object], path: Path, wanted: Sequence[Wanted] = ()) -> Common:
     """Check the names of all tables; read the title, the system and the units.
+
+    wanted : numbers with units outside of [system], for which a missing reference value is named, too
 
     Raises
     ------
@@ -333,19 +341,23 @@ def common_tables(tree: Mapping[str, object], path: Path) -> Common:
     if "system" not in tree:
         raise InputError("the configuration must have a table [system]; got none")
     described = _system_table(tree, path.parent)
-    system = _build(System, described, "system")
     given = _table(tree, "units")
-    units = _build(Units, given, "units") if given else None
+    chain, completed = chain_in_ratios(described, given, "system")
+    units = _build(Units, completed, "units") if completed else None
+    system = _build(System, in_ratios(chain, units, wanted, "system"), "system")
     return Common(title, system, units, (path, *_matrix_files(described)))
 
 
 def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None) -> Config:
-    title, system, units, files = common_tables(tree, path)
+    wanted = _wanted(tree)
+    title, system, units, files = common_tables(tree, path, wanted)
     settings, borders = _without_borders(_table(tree, "solver"))
     solver = _build(Solver, settings, "solver")
     curves = _build(curve_settings, _table(tree, "curves"), "curves")
     design_table(tree)
-    further = further_axes(tree)
+    scales = scales_of(units, system)
+    scales.require(wanted)
+    further = further_axes(tree, scales)
     variations = None if further is None else checked_variations(system, further)
     grid = _grid(tree, scales_of(units, system, variations))
     counts = {key: _count(grid[key], f"grid.{key}") for key in ("mu", "r", "beta")}
@@ -386,9 +398,20 @@ def _without_borders(solver: Mapping[str, object]) -> tuple[dict[str, object], b
     return settings, True
 
 
+def _wanted(tree: Mapping[str, object]) -> list[Wanted]:
+    """The numbers with units of [grid] and [axes]."""
+    grid, axes = _table(tree, "grid"), _table(tree, "axes")
+    found = [one for key, kind in KINDS.items() for one in needs(grid.get(key), f"grid.{key}", kind)]
+    if _COEFFICIENT in grid:
+        found.append(Wanted("coefficient", f"grid.{_COEFFICIENT}", grid[_COEFFICIENT]))
+    return [*found, *wanted_axes(axes)]
+
+
 def _grid(tree: Mapping[str, object], scales: Scales) -> dict[str, Any]:
     """The axes of the table [grid]; those with units as ratios."""
     grid: dict[str, Any] = {"mu": [1.0], **_table(tree, "grid")}
+    if _COEFFICIENT in grid:
+        _put_coefficients(grid, scales)
     for key, kind in KINDS.items():
         if key not in grid:
             raise InputError(f"grid.{key} must be a number, a list of numbers or a range; got nothing")
@@ -398,16 +421,31 @@ def _grid(tree: Mapping[str, object], scales: Scales) -> dict[str, Any]:
     return grid
 
 
-def further_axes(tree: Mapping[str, object]) -> dict[str, Any] | None:
-    """The table [axes] as `sweep` takes it; None without it.
+def _put_coefficients(grid: dict[str, Any], scales: Scales) -> None:
+    """Put friction ratios mu N/P in the place of friction coefficients, each rounded once."""
+    name, given = f"grid.{_COEFFICIENT}", grid.pop(_COEFFICIENT)
+    if "beta" in grid:
+        raise InputError("cannot use", name, "with grid.beta: both are the friction; omit one")
+    if isinstance(given, Mapping):
+        _check_form(given, name)
+    _count(given, name)
+    values = checks.axis(_values(given, name), name, least=0.0)
+    one = scales.needed("coefficient", name, given)
+    grid["beta"] = [rounded(Fraction(Decimal(repr(value))) / one) for value in values.tolist()]
+
+
+def further_axes(tree: Mapping[str, object], scales: Scales) -> dict[str, Any] | None:
+    """The table [axes] as `sweep` takes it, in ratios; None without it.
 
     Numbers, or for a dimension of several keys a mapping of them.
     """
     if "axes" not in tree:
         return None
     axes: dict[str, Any] = {}
-    for key, given in _table(tree, "axes").items():
-        if not isinstance(given, Mapping) or set(given) & set(_AXIS_KEYS):
+    for key, given in axes_in_ratios(_table(tree, "axes"), scales).items():
+        if isinstance(given, Ladder):
+            axes[key] = given.values()
+        elif not isinstance(given, Mapping) or set(given) & set(_AXIS_KEYS):
             _count(given, f"axes.{key}")
             axes[key] = _values(given, f"axes.{key}")
         else:

@@ -4,10 +4,12 @@ It refuses nothing that the program takes.  What needs arithmetic is left to the
 one number per mass, stop after start, files that are there; and JSON has no difference between 9 and 9.0.
 """
 
+import re
 from typing import Any
 
 from ..model.variations import CONTACT_NUMBERS, LISTS, NUMBERS
-from .key import Key, Schema, axis, describe_values, number, several
+from ..units.dimensions import RATIOS, axis_kind
+from .key import Key, Schema, axis, describe_values, either, number, several, with_unit
 from .keys import KEYS, TABLES
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -19,6 +21,13 @@ _TOGETHER: list[Schema] = [
     {
         "dependentRequired": {
             name: ["matrices"] for name in ("frequency_scale", "reduce", "rayleigh", "decouple")
+        }
+    },
+    {
+        "dependentSchemas": {
+            "masses": {"properties": {"mass_ratios": False, "matrices": False}},
+            "springs": {"properties": {"stiffness_ratios": False, "matrices": False}},
+            "dampers": {"properties": {"damping_ratios": False, "matrices": False}},
         }
     },
     {"dependentSchemas": {"rayleigh": {"properties": {"damping_ratios": False}}}},
@@ -48,7 +57,9 @@ def map_schema() -> dict[str, Any]:
     """The schema of what `map`, `curves`, `boundaries` and `response` read."""
     sections = {name: keyed_table(name, keys) for name, keys in KEYS.items() if name}
     sections["system"]["allOf"] = _TOGETHER
-    sections["grid"]["required"] = ["r", "beta"]
+    sections["grid"] |= {
+        "required": ["r"], "oneOf": [{"required": ["beta"]}, {"required": ["friction_coefficient"]}],
+    }  # fmt: skip
     return {
         "$schema": DIALECT,
         "title": "Configuration of frictionmap",
@@ -79,14 +90,26 @@ def _described(key: Key) -> dict[str, Any]:
     return {"description": text, "default": key.default, **key.valid}
 
 
+def _pattern(name: str) -> str:
+    """Pattern of the names of an axis, with any index."""
+    return f"^{re.escape(name).replace('1', '[1-9][0-9]*')}$"
+
+
+def _number(kind: str) -> Schema:
+    return either(number(), with_unit(kind)) if kind else number()
+
+
 def _further_axes() -> dict[str, Any]:
     """[axes]: numbers of the system by their names, and names of what changes together."""
     numbers, lists = "|".join(NUMBERS), "|".join(LISTS)
-    parts = "|".join(CONTACT_NUMBERS)
-    indexed = rf"({lists})\[[1-9][0-9]*\]|contacts\[[1-9][0-9]*\]\.({parts})"
+    names = (
+        *NUMBERS,
+        *(f"{name}[1]" for name in (*LISTS, *RATIOS)),
+        *(f"contacts[1].{name}" for name in CONTACT_NUMBERS),
+    )
     columns = {
         "type": "object", "minProperties": 1, "additionalProperties": False,
-        "patternProperties": {f"^({numbers}|{indexed})$": several(number())},
+        "patternProperties": {_pattern(name): several(_number(axis_kind(name))) for name in names},
     }  # fmt: skip
     file = {
         "type": "object", "required": ["file"], "additionalProperties": False,
@@ -97,7 +120,7 @@ def _further_axes() -> dict[str, Any]:
         "type": "object",
         "minProperties": 1,
         "patternProperties": {
-            f"^({numbers}|{indexed})$": axis(""),
+            **{_pattern(name): axis(axis_kind(name)) for name in names},
             f"^(?!({numbers}|{lists})$)[a-z][a-z0-9_]*$": {"anyOf": [file, columns]},
         },
         "additionalProperties": False,

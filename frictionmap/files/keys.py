@@ -25,8 +25,9 @@ from ..model.settings import (
 )
 from ..model.system import DAMPING_REFERENCES, EXCITATIONS, System
 from ..units.axes import KINDS
+from ..units.dimensions import DIMENSIONS, RATIOS, kinds_of
 from ..units.quantities import EXAMPLES
-from ..units.scales import MODEL_HAS, OF_MODEL, UNIT_KINDS
+from ..units.scales import OF_MODEL, UNIT_KINDS, WEIGHT, WORDS
 from ..units.table import units_of
 from .key import DOF, Key, Schema, axis, either, number, several, table, whole, with_unit, word
 
@@ -67,24 +68,55 @@ def _grid_key(name: str, meaning: str, **more: Any) -> Key:
     return Key(name, meaning, axis("", **AXES[name]), words=_RANGE, **more)
 
 
+#: What words in the place of a number mean.
+_WORDS = {OF_MODEL: "for matrices in SI units", WEIGHT: "that of the first mass, m_1 g"}
+
+
 def _unit(name: str, meaning: str) -> Key:
     """A number with its unit."""
     kind = UNIT_KINDS[name]
     words = f"a number and one of {', '.join(units_of(kind))}"
     valid = with_unit(kind)
-    if name in MODEL_HAS:
-        words, valid = f'{words}, or "{OF_MODEL}" for matrices in SI units', either(valid, word(OF_MODEL))
+    if name in WORDS:
+        words, valid = f'{words}, or "{WORDS[name]}": {_WORDS[WORDS[name]]}', either(valid, word(WORDS[name]))
     return Key(name, meaning, valid, example=f'"{EXAMPLES[kind]}"', words=words)
 
 
-_HARMONIC = {
-    "n": whole(least=1, most=MOST_HARMONICS), "mass": DOF, "amplitude": number(), "phase_deg": number(),
-    "re": number(), "im": number(),
-}  # fmt: skip
-_NORMAL = several(table({name: valid for name, valid in _HARMONIC.items() if name != "mass"}, ("n",)))
+def _or_unit(valid: Schema, key: str) -> Schema:
+    """A number that may have the unit of a key of [system]."""
+    return either(valid, *(with_unit(kind) for kind in kinds_of(key)))
 
-_ELEMENTS = several(number(above=0.0), maxItems=MOST_CONTACTS)
-_SPRING = either(number(above=0.0), _ELEMENTS)
+
+_NORMAL = several(
+    table(
+        {
+            "n": whole(least=1, most=MOST_HARMONICS), "amplitude": number(), "phase_deg": number(),
+            "re": number(), "im": number(),
+        },
+        ("n",),
+    )
+)  # fmt: skip
+_HARMONIC = {
+    **{name: _or_unit(number(), f"load_harmonics[].{name}") for name in ("amplitude", "re", "im")},
+    "n": whole(least=1, most=MOST_HARMONICS),
+    "mass": DOF,
+    "phase_deg": number(),
+}
+
+
+def _elements(key: str, **ends: float) -> Schema:
+    """A number of a contact, or a list of them, > 0, for a bank of elements."""
+    several_of = several(_or_unit(number(above=0.0), key), maxItems=MOST_CONTACTS)
+    return either(_or_unit(number(**ends), key), several_of)
+
+
+def _chain(name: str, meaning: str) -> Key:
+    """Masses or springs of a chain with their units."""
+    kind = DIMENSIONS[name]
+    example = f'["{EXAMPLES[kind]}"]'
+    words = f"numbers > 0, each with one of {', '.join(units_of(kind))}"
+    return Key(name, f"instead of {RATIOS[name]}: {meaning}", several(with_unit(kind)), None, example, words)
+
 
 #: Keys of [system] for several contacts, springs in contacts, belts and periodic loads.
 GENERAL_KEYS = (
@@ -114,13 +146,13 @@ GENERAL_KEYS = (
     Key(
         "load_offset",
         "constant force on each mass over P; it moves positions only",
-        several(number()),
+        several(_or_unit(number(), "load_offset")),
         example="[0.4]",
     ),
     Key(
         "contact_stiffness",
         "stiffness of a spring in series with the contact, over k_1; without it: rigid",
-        _SPRING,
+        _elements("contact_stiffness", above=0.0),
         example="3.0",
         words="a number > 0, or a list of them: a bank of elements that share the friction equally",
     ),
@@ -140,11 +172,11 @@ GENERAL_KEYS = (
                 {
                     "kind": word(*CONTACTS),
                     "masses": several(DOF, maxItems=2),
-                    "ratio": either(number(least=0.0), _ELEMENTS),
-                    "force": either(number(least=0.0), _ELEMENTS),
+                    "ratio": _elements("contacts[].ratio", least=0.0),
+                    "force": _elements("contacts[].force", least=0.0),
                     "mu": number(least=1.0),
                     "name": _NAME,
-                    "stiffness": _SPRING,
+                    "stiffness": _elements("contacts[].stiffness", above=0.0),
                     "wall_velocity": number(),
                     "normal_load": _NORMAL,
                 },
@@ -186,7 +218,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         Key(
             "load",
             "instead of load_mass: the load on every mass, divided by P",
-            several(either(number(), several(number(), 2, maxItems=2))),
+            several(either(_or_unit(number(), "load"), several(_or_unit(number(), "load"), 2, maxItems=2))),
             example="[1.0]",
             words="for every mass a number or [real part, imaginary part]",
         ),
@@ -201,6 +233,14 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "kappa_i = k_i/k_1 of a chain; the first is 1; spring 1 connects mass 1 to the ground",
             _RATIOS,
             words="numbers > 0",
+        ),
+        _chain("masses", "masses of a chain; the first one goes to [units]"),
+        _chain("springs", "springs of a chain; the first one connects mass 1 to the ground"),
+        Key(
+            "dampers",
+            "instead of damping_ratios: dashpots of a chain over sqrt(k_1 m_1), each beside its spring",
+            several(_or_unit(number(least=0.0), "dampers")),
+            example="[0.02]",
         ),
         Key(
             "damping_ratios",
@@ -233,7 +273,12 @@ KEYS: dict[str, tuple[Key, ...]] = {
         Key(
             "rayleigh",
             "with matrices, instead of damping_ratios: [a, b] of C = a M + b K",
-            several(number(least=0.0), 2, maxItems=2),
+            several(
+                number(least=0.0),
+                2,
+                maxItems=2,
+                prefixItems=[_or_unit(number(least=0.0), f"rayleigh[{k}]") for k in (1, 2)],
+            ),
             example="[0.1, 1e-5]",
             words="two numbers >= 0",
         ),
@@ -246,13 +291,13 @@ KEYS: dict[str, tuple[Key, ...]] = {
         Key(
             "frequency_scale",
             "with matrices: frequency at r = 1, in units of sqrt(K/M); default: first natural frequency",
-            number(above=0.0),
+            _or_unit(number(above=0.0), "frequency_scale"),
             example="12.3",
         ),
         _system_key(
             "stiffness_scale",
             "with matrices: displacements are in units of P/stiffness_scale; given in the units of K",
-            number(above=0.0),
+            _or_unit(number(above=0.0), "stiffness_scale"),
         ),
         _system_key(
             "excitation",
@@ -279,6 +324,13 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "friction ratio: kinetic friction force over load amplitude",
             axis(KINDS["beta"], **AXES["beta"]),
             example="1.0",
+            words=_RANGE,
+        ),
+        Key(
+            "friction_coefficient",
+            "instead of beta: friction force over units.normal_force",
+            axis("", **AXES["beta"]),
+            example="{ start = 0.0, stop = 0.5, step = 0.05 }",
             words=_RANGE,
         ),
         _grid_key("mu", "static-to-kinetic friction ratio, >= 1", default=[1.0]),
@@ -334,6 +386,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         _unit("acceleration_frequency", "frequency of base_acceleration"),
         _unit("stiffness", "k_1, or stiffness_scale: displacements are in units of P/k_1"),
         _unit("mass", "m_1 of a chain, in place of the stiffness or of the natural frequency"),
+        _unit("normal_force", "normal force in the contact, for grid.friction_coefficient"),
     ),
 }
 

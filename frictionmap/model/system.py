@@ -110,6 +110,13 @@ def _format_values(values: Sequence[complex]) -> str:
     return ", ".join(f"{value.real if value.imag == 0.0 else value:g}" for value in values)
 
 
+def _chain_matrix(values: np.ndarray) -> np.ndarray:
+    """Matrix (n, n) of springs or dashpots of a chain: the first one ends at the ground."""
+    matrix = np.diag(values) + np.diag(np.append(values[1:], 0.0))
+    matrix -= np.diag(values[1:], 1) + np.diag(values[1:], -1)
+    return matrix
+
+
 #: Natural frequencies that a notebook shows.
 _FREQUENCIES_SHOWN = 10
 
@@ -148,6 +155,9 @@ class System(Shown):
     damping_ratios : float or sequence of float, optional
         Damping ratio zeta [-] of all modes, or one value per mode in the order of the natural frequencies, 0
         to 100; values >= 1 are allowed.  Default 0.
+    dampers : sequence of float, optional
+        Instead of damping_ratios: dashpots d_i/sqrt(k_1 m_1) [-] of a chain, >= 0, each beside the spring of
+        its number; the first one ends at the ground, or at the base (see damping_reference).
     matrices : path or mapping, optional
         Instead of the ratios: M and K and optionally C, shape (n, n), in consistent units.  Either the path
         of a file with all of them (.npz, .mat; .op4 and .pch of Nastran), or a mapping of arrays, dense or
@@ -243,6 +253,7 @@ class System(Shown):
     waveform: str | os.PathLike | None = None
     harmonics: int | None = None
     load_offset: Sequence[float] | None = None
+    dampers: Sequence[float] | None = None
     _scale: float | None = field(default=None, init=False, repr=False)
     _contact_system: ContactSystem = field(init=False, repr=False, compare=False)
 
@@ -275,14 +286,14 @@ class System(Shown):
                 "with several contacts, springs, belts or loads of several harmonics: they "
                 "need all degrees of freedom; omit it",
             )
-        if self.n > 1 or self.matrices is not None:
+        if self.n > 1 or self.matrices is not None or self.dampers is not None:
             _ = self.modes  # errors that only the modes reveal are raised here
 
     def _filled(self) -> Mapping[str, object]:
         one = (1.0,) if self.matrices is None and self.n == 1 else None
         return {
             "contact_masses": (1,), "load_mass": 1, "mass_ratios": one, "stiffness_ratios": one,
-            "damping_ratios": (0.0,) * self.n,
+            "damping_ratios": None if self.dampers else (0.0,) * self.n,
             "excitation": "base" if self.contact == "joined-base-wall" else "force",
         }  # fmt: skip
 
@@ -315,7 +326,7 @@ class System(Shown):
         self._set("stiffness_ratios", springs)
 
     def _check_matrices(self) -> None:
-        for name in ("mass_ratios", "stiffness_ratios"):
+        for name in ("mass_ratios", "stiffness_ratios", "dampers"):
             given = getattr(self, name)
             if given is not None:
                 raise InputError(
@@ -366,7 +377,21 @@ class System(Shown):
         pair = tuple(checks.number(one, f"rayleigh[{k}]", least=0.0) for k, one in enumerate(values))
         self._set("rayleigh", pair)
 
+    def _check_dampers(self) -> None:
+        if self.damping_ratios is not None:
+            raise InputError(
+                "cannot use", "damping_ratios", "with dampers: both define the damping; omit one"
+            )
+        values = _sequence(self.dampers, "dampers", "numbers")
+        if len(values) != self.n:
+            raise InputError("dampers", f"must have one number per spring ({self.n}); got {len(values)}")
+        pairs = enumerate(values)
+        self._set("dampers", tuple(checks.number(one, f"dampers[{k}]", least=0.0) for k, one in pairs))
+
     def _check_damping(self) -> None:
+        if self.dampers is not None:
+            self._check_dampers()
+            return
         self._check_rayleigh()
         if self.decouple is not None:
             self._set("decouple", checks.number(self.decouple, "decouple", above=0.0, most=1.0))
@@ -569,10 +594,9 @@ class System(Shown):
             if self.n == 1 and self._scale is None:
                 mass = stiffness.copy()  # w = 1 by definition; scaling would give it with a rounding error
             return mass, stiffness, damping
-        springs = np.array(self.stiffness_ratios)
-        stiffness = np.diag(springs) + np.diag(np.append(springs[1:], 0.0))
-        stiffness -= np.diag(springs[1:], 1) + np.diag(springs[1:], -1)
-        return np.diag(np.array(self.mass_ratios)), stiffness, None
+        stiffness = _chain_matrix(np.array(self.stiffness_ratios))
+        damping = None if self.dampers is None else _chain_matrix(np.array(self.dampers))
+        return np.diag(np.array(self.mass_ratios)), stiffness, damping
 
     def _load_vector(self, stiffness: np.ndarray) -> np.ndarray:
         """Part of p that does not depend on r, complex (n,)."""
@@ -598,9 +622,10 @@ class System(Shown):
     def _check_ratios(self, zeta: np.ndarray) -> None:
         worst = int(np.argmax(zeta))
         if zeta[worst] > checks.LARGEST_DAMPING:
+            of_matrices = self.dampers is None
             raise InputError(
-                "matrices",
-                f": C must make damping ratios <= {checks.LARGEST_DAMPING:g}; got "
+                "matrices" if of_matrices else "dampers",
+                f"{': C ' if of_matrices else ''}must make damping ratios <= {checks.LARGEST_DAMPING:g}; got "
                 f"{zeta[worst]:.3g} of mode {worst + 1}",
             )
 
@@ -716,10 +741,11 @@ class System(Shown):
         if self.rayleigh is not None:
             zeta, (a, b) = self.modes.zeta, self.rayleigh
             return f"modal damping ratios {zeta.min():g} to {zeta.max():g}, from C = {a:g} M + {b:g} K"
+        source = "C" if self.dampers is None else f"dampers ({_format_values(self.dampers)})"
         if isinstance(self.modes, CoupledModel):
             zeta = self.modes.free.zeta
-            return f"damping that couples modes, ratios {zeta.min():g} to {zeta.max():g}, from C"
+            return f"damping that couples modes, ratios {zeta.min():g} to {zeta.max():g}, from {source}"
         if self.damping_ratios is None:
             zeta = self.modes.zeta
-            return f"modal damping ratios {zeta.min():g} to {zeta.max():g}, from C"
+            return f"modal damping ratios {zeta.min():g} to {zeta.max():g}, from {source}"
         return f"modal damping ratios {_format_values(tuple(dict.fromkeys(self.damping_ratios)))}"  # type: ignore[arg-type]

@@ -29,6 +29,7 @@ LISTS = {
     "mass_ratios": "mass ratio m_{0}/m_1",
     "stiffness_ratios": "stiffness ratio k_{0}/k_1",
     "damping_ratios": "damping ratio of mode {0}",
+    "dampers": "dashpot {0} over sqrt(k_1 m_1)",
     "load": "load on mass {0}, over P",
     "contact_masses": "mass in contact, number {0} of them",
 }
@@ -38,6 +39,7 @@ _WHOLE = ("load_mass", "contact_masses")
 _COUNTED = {
     "mass_ratios": ("mass", "masses"),
     "stiffness_ratios": ("mass", "masses"),
+    "dampers": ("damper", "dampers"),
     "contact_masses": ("mass in contact", "masses in contact"),
     "contacts": ("contact", "contacts"),
 }

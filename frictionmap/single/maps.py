@@ -17,7 +17,7 @@ from ..jobs import Job, Progress, Watch, run_here, run_jobs
 from ..model.settings import Solver
 from ..model.system import System
 from ..theory.boundary_curves import Curves
-from ..units.axes import KINDS, ratios
+from ..units.axes import KINDS, ratios, require
 from ..units.scales import Scales
 from .cells import Cells
 from .quantity_data import QuantityRequest, quantity_request, read_result
@@ -174,6 +174,7 @@ def checked_axes(
     r: ArrayLike, beta: ArrayLike, mu: ArrayLike, per_cell: int, scales: Scales
 ) -> dict[str, np.ndarray]:
     """Check the axes mu, r and beta of a grid with `per_cell` numbers per cell; r and beta may have units."""
+    require(scales, r=(KINDS["r"], r), beta=(KINDS["beta"], beta))
     r, beta = ratios(r, "r", KINDS["r"], scales), ratios(beta, "beta", KINDS["beta"], scales)
     r = checks.axis(r, "r", least=0.0, most=checks.LARGEST_RATIO)
     beta = checks.axis(beta, "beta", least=0.0)

@@ -13,7 +13,7 @@ from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
 from ..solvers.choose import engine_of
 from ..theory.refinement import boundary_check
-from ..units.axes import KINDS, ratios
+from ..units.axes import KINDS, ratios, require
 from ..units.scales import Scales, Units, scales_of
 
 #: Samples of a time history per excitation period.
@@ -37,6 +37,7 @@ def _ratio(given: object, name: str, scales: Scales) -> object:
 
 
 def _checked_cell(r: object, beta: object, mu: object, scales: Scales) -> tuple[float, float, float]:
+    require(scales, r=(KINDS["r"], r), beta=(KINDS["beta"], beta))
     r = checks.number(_ratio(r, "r", scales), "r", least=0.0, most=checks.LARGEST_RATIO)
     beta = checks.number(_ratio(beta, "beta", scales), "beta", least=0.0)
     mu = checks.number(mu, "mu", least=1.0)

@@ -18,6 +18,7 @@ from ..model.system import System
 from ..model.variations import Variations, checked_variations
 from ..single.maps import checked_axes
 from ..solvers.choose import engine_of
+from ..units.dimensions import axes_in_ratios
 from ..units.scales import Units, scales_of
 from .configured import Configured, system_and_axes
 from .refinement import reduction_check
@@ -102,7 +103,8 @@ def swept(
     units: Units | None, watch: Watch | None = None,
 ) -> xr.Dataset:  # fmt: skip
     """Compute the dataset of `sweep` over r, beta and mu; `watch` may end the computation."""
-    variations = None if axes is None else checked_variations(system, axes)
+    own = axes_in_ratios(axes, scales_of(units, system))
+    variations = None if own is None else checked_variations(system, own)
     scales = scales_of(units, system, variations)
     grid = checked_axes(*given, system.n if "amplitude" in solver.outputs else 1, scales)
     (variations or system).costs(grid["r"])

@@ -7,5 +7,6 @@ table       known units and their exact sizes
 quantities  numbers with units, from text or from another package, as exact numbers
 scales      `Units`: reference values that convert ratios to Hz and N
 axes        conversion of values and ranges with units to ratios
+dimensions  keys of [system] that have a dimension, and their conversion to ratios
 ==========  ============================================================================
 """

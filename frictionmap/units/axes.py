@@ -1,6 +1,7 @@
 """Conversion of values and ranges with units to ratios, and back to short decimal numbers."""
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import Decimal
@@ -11,8 +12,8 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from .quantities import quantities, quantity
-from .scales import NO_SCALES, Scales
+from .quantities import is_foreign, is_plain_number, quantities, quantity, unit_of_array
+from .scales import NO_SCALES, Scales, Wanted, rounded
 
 #: Quantities that the ratios of a grid refer to.
 KINDS = {"r": "frequency", "beta": "force"}
@@ -36,6 +37,46 @@ class Ladder:
         return values
 
 
+#: Text that begins as a number does, and is no number alone.
+_BEGINS = re.compile(r"[+-]?\.?[0-9]")
+
+
+def has_units(values: Any) -> bool:
+    """Whether a number, a list or a range has a unit somewhere, right or wrong."""
+    if isinstance(values, str):
+        return _BEGINS.match(values) is not None and not is_plain_number(values)
+    if isinstance(values, (list, tuple)):
+        return any(has_units(value) for value in values)
+    if isinstance(values, Mapping):
+        return any(has_units(value) for value in values.values())
+    return is_foreign(values) or unit_of_array(values) is not None
+
+
+def needs(values: Any, name: str, kind: str) -> list[Wanted]:
+    """What a value, a list or a range needs to become ratios; units of another kind are refused elsewhere."""
+    return [Wanted(kind, name, values)] if _has_valid(values, kind) else []
+
+
+def _has_valid(values: Any, kind: str) -> bool:
+    """Whether a number with a unit of this kind is somewhere in a value, a list or a range."""
+    if isinstance(values, Mapping):
+        return any(_has_valid(value, kind) for value in values.values())
+    if isinstance(values, (list, tuple)):
+        return any(_has_valid(value, kind) for value in values)
+    try:
+        return quantities(values, "", kind) is not None
+    except InputError:
+        return False
+
+
+def require(scales: Scales, **given: tuple[str, Any]) -> None:
+    """Refuse arguments with units of which a reference value is missing, all of them in one message.
+
+    given : kind and value of every argument
+    """
+    scales.require([one for name, (kind, values) in given.items() for one in needs(values, name, kind)])
+
+
 def ratios(values: Any, name: str, kind: str, scales: Scales) -> Any:
     """Convert values of an axis to ratios, each rounded once; numbers without units are returned unchanged.
 
@@ -57,14 +98,6 @@ def ratios(values: Any, name: str, kind: str, scales: Scales) -> Any:
     return [rounded(value / one) for value in found]
 
 
-def rounded(value: Fraction) -> float:
-    """The nearest double; infinity beyond all."""
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf if value > 0 else -math.inf
-
-
 def grid_ratios(axis: Any, name: str, kind: str, scales: Scales) -> Any:
     """Convert a valid axis of a configuration to ratios; see `ratios`.
 
@@ -81,20 +114,9 @@ def grid_ratios(axis: Any, name: str, kind: str, scales: Scales) -> Any:
     try:
         return _ladder(axis, name, kind, scales)
     except InputError:
-        if scales is NO_SCALES and not _with_units(axis, kind):
+        if scales is NO_SCALES and not _has_valid(axis, kind):
             return axis
         raise
-
-
-def _with_units(axis: Mapping[str, Any], kind: str) -> bool:
-    """Whether any number of a range has a unit that is right."""
-    for key in ("start", "stop", "step"):
-        try:
-            quantity(axis.get(key), key, kind)
-        except InputError:
-            continue
-        return True
-    return False
 
 
 def _ladder(axis: Mapping[str, Any], name: str, kind: str, scales: Scales) -> Ladder:

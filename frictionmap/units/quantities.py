@@ -16,9 +16,10 @@ from .. import checks
 from ..errors import InputError
 from .table import UNITS, known_unit, units_of
 
-#: A number with a decimal point, then its unit, with one space between them or none.
+#: A number with a decimal point, then its unit, with one space between them or none.  A unit begins with a
+#: letter, or is 1/s; that of a dashpot may have a space in it.
 NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-_TEXT = re.compile(rf"({NUMBER}) ?([A-Za-z\u00b5\u03bc]\S*)")
+_TEXT = re.compile(rf"({NUMBER})(?: ?([A-Za-z\u00b5\u03bc]\S*(?: s/m{{1,2}}| s/in)?)| (1/s))")
 _NO_NUMBER = re.compile(r"[+-]?(nan|inf|infinity)\b", re.IGNORECASE)
 _COMMA = re.compile(r"[+-]?[0-9.]*,[0-9]")
 
@@ -30,12 +31,16 @@ EXAMPLES = {
     "mass": "2 kg",
     "stiffness": "3 N/mm",
     "acceleration": "0.5 g",
+    "velocity": "0.2 m/s",
+    "viscosity": "3 N s/m",
+    "rate": "0.1 1/s",
     "time": "0.5 s",
 }
 
 #: The units that other packages are asked to convert into; all of them know these.
 _ASKED = {
     "force": "N", "length": "m", "mass": "kg", "stiffness": "N/m", "acceleration": "m/s**2",
+    "velocity": "m/s", "viscosity": "N*s/m", "rate": "1/s", "time": "s",
 }  # fmt: skip
 
 #: Frequencies in other packages, by how they write their own unit: cycles, or angles, over time.  A plain
@@ -66,7 +71,7 @@ def is_foreign(value: object) -> bool:
 
 
 def quantity(value: object, name: str, kind: str) -> Quantity:
-    """Convert a number with a unit of frequency, force, length, mass, stiffness or acceleration.
+    """Convert a number with a unit of the given kind.
 
     Raises
     ------
@@ -97,7 +102,7 @@ def quantities(values: Any, name: str, kind: str) -> list[Fraction] | None:
         found, unit = _converted(values, name, kind)
         texts = [f"{float(number)!r} {unit}" for number in np.atleast_1d(found).ravel()]
         return [_from_text(text, f"{name}[{k}]", kind).value for k, text in enumerate(texts)]
-    said = _unit_of_array(values, name, kind)
+    said = _known_unit_of_array(values, name, kind)
     if said is not None:
         texts = [f"{float(number)!r} {said}" for number in np.atleast_1d(values).ravel()]
         return [_from_text(text, f"{name}[{k}]", kind).value for k, text in enumerate(texts)]
@@ -110,12 +115,13 @@ def quantities(values: Any, name: str, kind: str) -> list[Fraction] | None:
 
 
 def _from_text(text: str, name: str, kind: str) -> Quantity:
-    matched = None if _is_text_of_number(text) else _TEXT.fullmatch(text)
+    matched = None if is_plain_number(text) else _TEXT.fullmatch(text)
     if matched is None:
         raise _refusal(name, kind, text, _slip(text))
-    unit = known_unit(matched[2])
+    written = matched[2] or matched[3]
+    unit = known_unit(written)
     if unit is None:
-        raise _refusal(name, kind, text, _meant(matched[2], kind))
+        raise _refusal(name, kind, text, _meant(written, kind))
     if UNITS[unit].measures != kind:
         raise _refusal(name, kind, text, f"{unit} is a unit of {UNITS[unit].measures}")
     size = float(matched[1])  # beyond all doubles no exact number is made: it could fill the memory
@@ -130,10 +136,10 @@ def _slip(text: str) -> str:
         return "use a decimal point, not a comma"
     if _NO_NUMBER.match(text):
         return "it is not finite"
-    return "it has no unit" if _is_text_of_number(text) else "expected one number, one space and one unit"
+    return "it has no unit" if is_plain_number(text) else "expected one number, one space and one unit"
 
 
-def _is_text_of_number(text: str) -> bool:
+def is_plain_number(text: str) -> bool:
     """Whether it is a number alone, such as 1e5."""
     try:
         float(text)
@@ -171,10 +177,16 @@ def _own_unit(value: Any) -> str:
     return str(getattr(value, "units", None) if hasattr(value, "units") else getattr(value, "unit", ""))
 
 
-def _unit_of_array(values: Any, name: str, kind: str) -> str | None:
+def unit_of_array(values: Any) -> object:
     """The unit that an array of xarray says its numbers have; None of ratios, which say 1 or nothing."""
     said = getattr(values, "attrs", {}).get("units") if checks.is_array(values) else None
-    if said in (None, "", "1"):
+    return None if said in (None, "", "1") else said
+
+
+def _known_unit_of_array(values: Any, name: str, kind: str) -> str | None:
+    """The unit of an array of xarray; None of ratios."""
+    said = unit_of_array(values)
+    if said is None:
         return None
     unit = known_unit(_CF.get(str(said), str(said)))
     if unit is None:

@@ -1,10 +1,11 @@
 """Reference values that convert ratios to Hz and N, and the lengths and forces that follow from them."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple, Protocol
 
 from .. import checks
 from ..errors import InputError
@@ -13,7 +14,7 @@ from ..model.shown import Shown
 from ..model.system import System
 from ..model.variations import Variations
 from .quantities import quantity
-from .table import PI
+from .table import PI, UNITS
 
 #: What of a structure given by matrices is read as it stands: they are in SI units then.
 OF_MODEL = "model"
@@ -28,7 +29,14 @@ UNIT_KINDS = {
     "acceleration_frequency": "frequency",
     "stiffness": "stiffness",
     "mass": "mass",
+    "normal_force": "force",
 }
+
+#: A normal force that is the weight of the first mass.
+WEIGHT = "weight"
+
+#: Words that may stand in the place of a number.
+WORDS = {**dict.fromkeys(MODEL_HAS, OF_MODEL), "normal_force": WEIGHT}
 
 #: Values of which some follow from the others: how many of them may be given, and what to do.
 _RIVALS = (
@@ -86,6 +94,10 @@ class Units(Shown):
         m_1 of a chain: with the natural frequency it gives k_1, with the stiffness the natural frequency.
         kg, lb.
 
+    normal_force : str, optional
+        Normal force N in the contact: friction is then also given by its coefficient, as `friction`.  N, mN,
+        kN, lbf; "weight": that of the first mass of a chain, m_1 g.
+
     What follows of them for r = 1, beta = 1, an amplitude and a work of 1 is 1e-100 to 1e100 in SI units.
 
     Raises
@@ -109,6 +121,7 @@ class Units(Shown):
     acceleration_frequency: str | Any = None
     stiffness: str | Any = None
     mass: str | Any = None
+    normal_force: str | Any = None
 
     def __post_init__(self) -> None:
         given = [name for name in UNIT_KINDS if getattr(self, name) is not None]
@@ -134,7 +147,7 @@ class Units(Shown):
     def _check(self, name: str) -> None:
         """Check a number with a unit and keep its text."""
         value = getattr(self, name)
-        if isinstance(value, str) and value == OF_MODEL and name in MODEL_HAS:
+        if isinstance(value, str) and value == WORDS.get(name):
             return
         found = quantity(value, name, UNIT_KINDS[name])
         if found.value <= 0:
@@ -144,15 +157,51 @@ class Units(Shown):
     def value(self, name: str) -> Fraction | None:
         """Value in SI units, Hz for a frequency; None if not given or taken from the model."""
         text = getattr(self, name)
-        return None if text in (None, OF_MODEL) else quantity(text, name, UNIT_KINDS[name]).value
+        return None if text in (None, WORDS.get(name)) else quantity(text, name, UNIT_KINDS[name]).value
 
     @property
     def given(self) -> dict[str, str]:
         """Given values, as in a configuration."""
         return {field.name: text for field in fields(self) if (text := getattr(self, field.name)) is not None}
 
+    def friction(self, coefficient: float) -> str:
+        """The friction force of a coefficient, mu N: a text that every axis of beta takes.
+
+        Examples
+        --------
+        >>> import frictionmap as fm
+        >>> fm.Units(load="400 N", normal_force="500 N").friction(0.3)
+        '150.0 N'
+        """
+        given = checks.number(coefficient, "coefficient", least=0.0)
+        normal = self.normal()
+        if normal is None:
+            raise InputError("normal_force", "must be given for a friction coefficient; got nothing")
+        return f"{rounded(Fraction(given) * normal)!r} N"
+
+    def normal(self) -> Fraction | None:
+        """Normal force [N]; None if it does not follow."""
+        if self.normal_force != WEIGHT:
+            return self.value("normal_force")
+        mass, frequency, stiffness = (self.value(name) for name in ("mass", "natural_frequency", "stiffness"))
+        if mass is None and frequency is not None and stiffness is not None:
+            mass = stiffness / (2 * PI * frequency) ** 2
+        return None if mass is None else mass * UNITS["g"].size
+
     def _repr_html_(self) -> str:
         return as_table("Units", {name.replace("_", " "): text for name, text in self.given.items()})
+
+
+class Wanted(NamedTuple):
+    """A number with a unit: its kind, its key and what was given."""
+
+    kind: str
+    name: str
+    given: object
+
+
+#: Numbers that a message about missing reference values names.
+_NAMED = 4
 
 
 @dataclass(frozen=True)
@@ -162,36 +211,97 @@ class Scales:
     frequency : at r = 1 [Hz]
     force : P, at beta = 1 [N]
     length : P/k_1, or Y [m]
+    stiffness : k_1, or stiffness_scale [N/m]
+    normal : normal force N in the contact, friction coefficients times which are friction [N]
     """
 
     frequency: Fraction | None
     force: Fraction | None
     length: Fraction | None
+    stiffness: Fraction | None = None
+    normal: Fraction | None = None
 
     @property
     def work(self) -> Fraction | None:
         """Force times length [J]."""
         return None if self.force is None or self.length is None else self.force * self.length
 
+    @property
+    def velocity(self) -> Fraction | None:
+        """omega_1 P/k_1 [m/s]."""
+        return (
+            None if self.frequency is None or self.length is None else 2 * PI * self.frequency * self.length
+        )
+
+    @property
+    def mass(self) -> Fraction | None:
+        """k_1/omega_1^2 [kg]."""
+        if self.frequency is None or self.stiffness is None:
+            return None
+        return self.stiffness / (2 * PI * self.frequency) ** 2
+
+    @property
+    def viscosity(self) -> Fraction | None:
+        """k_1/omega_1 [N s/m]."""
+        if self.frequency is None or self.stiffness is None:
+            return None
+        return self.stiffness / (2 * PI * self.frequency)
+
+    @property
+    def coefficient(self) -> Fraction | None:
+        """P/N: the friction coefficient at beta = 1."""
+        return None if self.force is None or self.normal is None else self.force / self.normal
+
     def of(self, kind: str) -> float | None:
-        """Reference value of a kind of numbers: frequency, force, length or work."""
+        """Reference value of a kind of numbers, such as frequency, force, length or work."""
         found: Fraction | None = getattr(self, kind)
         return None if found is None else float(found)
 
     def needed(self, kind: str, name: str, given: object) -> Fraction:
-        """Reference value of an axis; the error names the missing key."""
-        found: Fraction | None = getattr(self, kind)
-        if found is None:
-            missing = {
-                "frequency": "units.natural_frequency, or units.mass with units.stiffness",
-                "force": "units.load, or units.base_amplitude with units.stiffness",
-                "length": "units.base_amplitude, or units.load with units.stiffness",
-            }
-            raise InputError(
-                f"cannot convert {name} = {checks.one_line(given)} to ratios: a reference value is missing; "
-                f"give {missing[kind]}"
-            )
+        """Reference value of a number; the error names the keys that it needs."""
+        self.require([Wanted(kind, name, given)])
+        found: Fraction = getattr(self, kind)
         return found
+
+    def require(self, wanted: Sequence[Wanted]) -> None:
+        """Refuse numbers with units of which a reference value is missing, all of them in one message."""
+        lacking = [one for one in wanted if getattr(self, one.kind) is None]
+        if not lacking:
+            return
+        missing = self._missing({one.kind for one in lacking})
+        what = " and ".join(f"{one.name} = {checks.one_line(one.given)}" for one in lacking[:_NAMED])
+        more = f" and {len(lacking) - _NAMED} more" if len(lacking) > _NAMED else ""
+        are = "a reference value is" if len(missing) == 1 else "reference values are"
+        raise InputError(
+            f"cannot convert {what}{more} to ratios: {are} missing; give {' and '.join(missing)}"
+        )
+
+    def _missing(self, kinds: set[str]) -> list[str]:
+        """Keys of [units] that numbers of these kinds need and that do not follow from the given ones."""
+        forces, lengths = kinds & {"force", "coefficient"}, kinds & {"length", "velocity"}
+        springs = kinds & {"stiffness", "mass", "viscosity"}
+        no_load = self.force is None and self.length is None
+        if self.length is None:
+            springs |= lengths
+        elif self.force is None:
+            springs |= forces
+        found = {
+            "units.natural_frequency (or units.mass with units.stiffness)": self.frequency is None
+            and kinds & {"frequency", "velocity", "mass", "viscosity"},
+            "units.load (or units.base_amplitude for a moving base)": no_load and (forces or lengths),
+            "units.stiffness": self.stiffness is None and springs,
+            "units.normal_force": self.normal is None and "coefficient" in kinds,
+        }
+        return [key for key, is_missing in found.items() if is_missing]
+
+
+class Reference(Protocol):
+    """What matrices in SI units define."""
+
+    @property
+    def omega_1(self) -> float: ...
+    @property
+    def stiffness_scale(self) -> float: ...
 
 
 #: No units are given.
@@ -211,6 +321,17 @@ def scales_of(units: Units | None, system: System, variations: Variations | None
     checks.instance(units, "units", Units)
     _check_system(units, system)
     _check_variations(variations)
+    return reference_scales(units, system)
+
+
+def reference_scales(units: Units, system: Reference) -> Scales:
+    """Reference values of the ratios from units and what the matrices of a system define.
+
+    Raises
+    ------
+    InputError
+        What the units make of 1 is beyond 1e-100 to 1e100.
+    """
     frequency, stiffness = _frequency(units, system), _stiffness(units, system)
     mass = units.value("mass")
     if mass is not None and frequency is not None:
@@ -223,7 +344,7 @@ def scales_of(units: Units | None, system: System, variations: Variations | None
             length * stiffness if force is None and length is not None else force,
             force / stiffness if length is None and force is not None else length,
         )
-    scales = Scales(frequency, force, length)
+    scales = Scales(frequency, force, length, stiffness, units.normal())
     _check_sizes(scales, units)
     return scales
 
@@ -257,6 +378,11 @@ def _check_system(units: Units, system: System) -> None:
             "units.mass",
             "with matrices: only a chain has a first mass; use units.stiffness for stiffness_scale",
         )
+    if units.normal_force == WEIGHT and units.normal() is None:
+        raise InputError(
+            "units.normal_force",
+            "must be a force, or 'weight' with units.mass or system.masses; got 'weight' without a mass",
+        )
     for name in MODEL_HAS:
         if getattr(units, name) == OF_MODEL and system.matrices is None:
             raise InputError(
@@ -278,6 +404,14 @@ def _check_variations(variations: Variations | None) -> None:
                 )
 
 
+def rounded(value: Fraction) -> float:
+    """The nearest double; infinity beyond all."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
 def _root(value: Fraction) -> Fraction:
     """The square root, to 60 digits as pi, or exactly where it is rational."""
     found = [math.isqrt(number) for number in (value.numerator, value.denominator)]
@@ -287,13 +421,13 @@ def _root(value: Fraction) -> Fraction:
     return Fraction(math.isqrt(value.numerator * value.denominator * 10**120), scale)
 
 
-def _frequency(units: Units, system: System) -> Fraction | None:
+def _frequency(units: Units, system: Reference) -> Fraction | None:
     if units.natural_frequency == OF_MODEL:
         return Fraction(system.omega_1) / (2 * PI)
     return units.value("natural_frequency")
 
 
-def _stiffness(units: Units, system: System) -> Fraction | None:
+def _stiffness(units: Units, system: Reference) -> Fraction | None:
     return Fraction(system.stiffness_scale) if units.stiffness == OF_MODEL else units.value("stiffness")
 
 

@@ -54,6 +54,10 @@ UNITS = {
     "kN/m": Unit("stiffness", Fraction(1000)),
     "kN/mm": Unit("stiffness", Fraction(10**6)),
     "lbf/in": Unit("stiffness", _POUND_FORCE / _INCH),
+    "N s/m": Unit("viscosity", Fraction(1)),
+    "N s/mm": Unit("viscosity", Fraction(1000)),
+    "kN s/m": Unit("viscosity", Fraction(1000)),
+    "lbf s/in": Unit("viscosity", _POUND_FORCE / _INCH),
     "m/s": Unit("velocity", Fraction(1), "m_s"),
     "mm/s": Unit("velocity", Fraction(1, 1000), "mm_s"),
     "cm/s": Unit("velocity", Fraction(1, 100), "cm_s"),
@@ -69,6 +73,7 @@ UNITS = {
     "ms": Unit("time", Fraction(1, 1000), "ms"),
     "us": Unit("time", Fraction(1, 10**6), "us"),
     "min": Unit("time", Fraction(60), "min"),
+    "1/s": Unit("rate", Fraction(1)),
     "deg": Unit("angle", PI / 180, "deg"),
     "rad": Unit("angle", Fraction(1), "rad"),
     "mrad": Unit("angle", Fraction(1, 1000), "mrad"),
@@ -89,6 +94,14 @@ _ALIASES |= {
 }
 _ALIASES |= {name.replace("/s", "/sec"): name for name in UNITS if name.endswith("/s")}
 
+#: Units of dashpots may be written without the space in them.
+_ALIASES |= {
+    name.replace(" s", joined): name
+    for name, unit in UNITS.items()
+    if unit.measures == "viscosity"
+    for joined in ("s", "*s", "\u00b7s")
+}
+
 #: Units that names of columns may end in, by how they do.
 COLUMN_UNITS = {unit.column: unit for unit in UNITS.values() if unit.column}
 
@@ -103,7 +116,7 @@ _SEVERAL = {"motion": MOTIONS, "swing": (*MOTIONS, "angle")}
 
 
 def units_of(measures: str) -> tuple[str, ...]:
-    """Units of frequency, force, length, mass, stiffness, velocity, acceleration, time or angle."""
+    """Units of a kind: frequency, force, length, mass, stiffness, viscosity, velocity, time, angle, ..."""
     return tuple(name for name, unit in UNITS.items() if unit.measures == measures)
 
 

@@ -53,7 +53,7 @@ map good.toml --set titel=x
 map good.toml --set title=1
     title must be text; got 1
 map good.toml --set system.contct=fixed-wall
-    unknown key 'system.contct' (did you mean contact?); valid: contact, contact_masses, load_mass, load, mass_ratios, stiffness_ratios, damping_ratios, matrices, reduce, rayleigh, decouple, frequency_scale, stiffness_scale, excitation, damping_reference, load_harmonics, load_file, waveform, harmonics, load_offset, contact_stiffness, wall_velocity, normal_load, contacts
+    unknown key 'system.contct' (did you mean contact?); valid: contact, contact_masses, load_mass, load, mass_ratios, stiffness_ratios, masses, springs, dampers, damping_ratios, matrices, reduce, rayleigh, decouple, frequency_scale, stiffness_scale, excitation, damping_reference, load_harmonics, load_file, waveform, harmonics, load_offset, contact_stiffness, wall_velocity, normal_load, contacts
 map good.toml --set solver.step=9
     unknown key 'solver.step' (did you mean steps?); valid: start, cycles, tolerance, steps, skip, steady, outputs
 map good.toml --set grid.r.stepp=1
@@ -89,13 +89,13 @@ map good.toml --set grid.mu=0.9
 map good.toml --set grid.r={start=0,stop=1,num=100000} --set grid.beta={start=0,stop=1,num=100000}
     grid must have at most 1e+09 cells in memory; got 1e+10 (1 mu x 100000 r x 100000 beta)
 map good.toml --set grid.r=2.1Hz
-    cannot convert grid.r = '2.1Hz' to ratios: a reference value is missing; give units.natural_frequency, or units.mass with units.stiffness
+    cannot convert grid.r = '2.1Hz' to ratios: a reference value is missing; give units.natural_frequency (or units.mass with units.stiffness)
 map good.toml --set 'grid.r="2,1 Hz"' --set 'units.natural_frequency="4.2 Hz"'
     grid.r must be a number with a unit of frequency (Hz, kHz, rad/s, rpm), such as '4.2 Hz'; got '2,1 Hz': use a decimal point, not a comma
 map good.toml --set 'grid.r="2.1 N"' --set 'units.natural_frequency="4.2 Hz"'
     grid.r must be a number with a unit of frequency (Hz, kHz, rad/s, rpm), such as '4.2 Hz'; got '2.1 N': N is a unit of force
 map good.toml --set units.lod=1
-    unknown key 'units.lod' (did you mean load?); valid: natural_frequency, load, base_amplitude, base_acceleration, acceleration_frequency, stiffness, mass
+    unknown key 'units.lod' (did you mean load?); valid: natural_frequency, load, base_amplitude, base_acceleration, acceleration_frequency, stiffness, mass, normal_force
 map good.toml --set 'units.load="1"'
     units.load must be a number with a unit of force (N, mN, kN, lbf), such as '12.5 N'; got '1': it has no unit
 map good.toml --set 'units.load="-1 N"'
@@ -123,7 +123,7 @@ map good.toml --set solver.outputs=[]
 map good.toml --set 'solver.outputs=["regim"]'
     solver.outputs must be one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, beta_lim_modal, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, least_slip, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall, release_order; got 'regim' (did you mean regime?)
 map good.toml --set 'axes.damping_ratio=[0,0.1]'
-    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity; got 'damping_ratio' (did you mean damping_ratios?)
+    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], dampers[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity; got 'damping_ratio' (did you mean damping_ratios?)
 map good.toml --set 'axes={"mass_ratios[2]"=[1,2]}'
     axes, at mass_ratios_2 = 1: cannot use axis mass_ratios[2]: the system has 1 mass; use an index <= 1
 map good.toml --set 'axes={damping_ratios=[]}'
@@ -401,7 +401,7 @@ map good.toml --threads 1.5
 map good.toml --set
     frictionmap map: argument --set: expected one argument (see frictionmap map --help)
 map good.toml --set grid.q=1
-    unknown key 'grid.q'; valid: r, beta, mu
+    unknown key 'grid.q'; valid: r, beta, friction_coefficient, mu
 map good.toml --set solver.outputs=regime
     solver.outputs must be a list of names; got 'regime'
 map good.toml --set solver.steps=many
@@ -465,7 +465,7 @@ design question.toml --set design.band=[0,1]
 design question.toml --set design.band=[2,1]
     design.band must be increasing; got 1.0 at index 1
 design question.toml --set 'design.band=["1 Hz","2 Hz"]'
-    [design]: cannot convert band = ['1 Hz', '2 Hz'] to ratios: a reference value is missing; give units.natural_frequency, or units.mass with units.stiffness
+    cannot convert design.band = ['1 Hz', '2 Hz'] to ratios: a reference value is missing; give units.natural_frequency (or units.mass with units.stiffness)
 design question.toml --set design.mu=0.9
     design.mu must be >= 1; got 0.9
 design question.toml --set design.beta=[0.5]
@@ -617,7 +617,7 @@ identify forced.toml --set data.sigma_phase_deg=0
 identify forced.toml --set system.contact=wall
     system.contact must be one of fixed-wall, joined-base-wall, between-masses; got 'wall' (did you mean fixed-wall?)
 identify forced.toml --set system.masses=2
-    unknown key 'system.masses' (did you mean contact_masses?); valid: contact, contact_masses, load_mass, load, mass_ratios, stiffness_ratios, damping_ratios, matrices, reduce, rayleigh, decouple, frequency_scale, stiffness_scale, excitation, damping_reference, load_harmonics, load_file, waveform, harmonics, load_offset, contact_stiffness, wall_velocity, normal_load, contacts
+    system.masses must be a list of numbers with a unit of mass, such as ['2 kg']; got 2
 identify forced.toml --set known.mu=0.9
     file forced.csv: known.mu must be >= 1; got 0.9
 identify forced.toml --set known.x_F=1
@@ -685,7 +685,7 @@ fm.Solver(cycles=0)
 fm.Solver(outputs="regime")
     outputs must be a list of names; got 'regime'
 fm.Units()
-    units must have at least one of natural_frequency, load, base_amplitude, base_acceleration, acceleration_frequency, stiffness, mass; got none
+    units must have at least one of natural_frequency, load, base_amplitude, base_acceleration, acceleration_frequency, stiffness, mass, normal_force; got none
 fm.Units(load="1")
     load must be a number with a unit of force (N, mN, kN, lbf), such as '12.5 N'; got '1': it has no unit
 fm.sweep("system", [1.0], [0.5])
@@ -701,7 +701,7 @@ fm.sweep(ONE, [1.0], [-0.5])
 fm.sweep(ONE, [1.0], [0.5], [0.5])
     mu must be >= 1; got 0.5 at index 0
 fm.sweep(ONE, ["1 Hz"], [0.5])
-    cannot convert r = ['1 Hz'] to ratios: a reference value is missing; give units.natural_frequency, or units.mass with units.stiffness
+    cannot convert r = ['1 Hz'] to ratios: a reference value is missing; give units.natural_frequency (or units.mass with units.stiffness)
 fm.sweep(ONE, [1.0], [0.5], start="sliding")
     start must be one of rest, moving; got 'sliding'
 fm.sweep(ONE, [1.0], [0.5], step=9)
@@ -709,7 +709,7 @@ fm.sweep(ONE, [1.0], [0.5], step=9)
 fm.sweep(ONE, [1.0], [0.5], threads=0)
     threads must be >= 1; got 0
 fm.sweep(ONE, [1.0], [0.5], axes={"zeta": [0.1]})
-    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity; got 'zeta'
+    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], dampers[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity; got 'zeta'
 fm.sweep(ONE, [1.0], [0.5], axes={"damping_ratios": [-0.1, 0.1]})
     axes, at damping_ratios = -0.1: damping_ratios must be >= 0; got -0.1
 fm.sweep(ONE, [1.0], [0.5], axes={"regime": {"load_mass": [1]}})

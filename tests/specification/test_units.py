@@ -362,11 +362,12 @@ def test_a_grid_with_units_needs_them(rig, tmp_path):
         CONFIG.replace("[units]", "[solver]").split("[solver]")[0] + "[grid]" + CONFIG.split("[grid]")[1]
     )
     with pytest.raises(
-        InputError, match=r"^cannot convert grid\.r = .*; give units\.natural_frequency, or .*"
+        InputError,
+        match=r"^cannot convert grid\.r = .* and grid\.beta = .*; give .*natural_frequency .* and .*load ",
     ):
         load_config(path)
     with pytest.raises(
-        InputError, match=r"^cannot convert r = '4 Hz' to ratios: .*; give units\.natural_frequency, or .*"
+        InputError, match=r"^cannot convert r = '4 Hz' to ratios: .*; give units\.natural_frequency \(or .*"
     ):
         fm.boundaries(fm.System(), "4 Hz")
 

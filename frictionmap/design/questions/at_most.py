@@ -10,6 +10,7 @@ from ...datasets.design_labels import beta_label, size_label
 from ...datasets.labels import Label
 from ...files.key import Key, either, number, with_unit
 from ...model.system import System
+from ...units.axes import require
 from ...units.scales import Units, scales_of
 from .keys import BAND, OF_PEAKS
 from .record import Goal, Question, Ranges
@@ -62,6 +63,7 @@ def at_most(
     checks.instance(system, "system", System)
     scales = scales_of(units, system)
     kind = "force" if quantity == "transmitted_force" else "length"
+    require(scales, limit=(kind, limit), band=("frequency", band), beta=("force", beta))
     value = checked_number(limit, "limit", kind, scales, above=0.0)
     task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units)
     curve = task.performance()

@@ -10,7 +10,7 @@ from ...datasets.design_labels import beta_label, r_label
 from ...datasets.labels import Label
 from ...files.key import Key, either, number, with_unit
 from ...model.system import System
-from ...units.axes import KINDS
+from ...units.axes import KINDS, require
 from ...units.scales import Units, scales_of
 from .keys import BETA, MU
 from .record import Question
@@ -60,6 +60,7 @@ def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units |
 
     checks.instance(system, "system", System)
     scales = scales_of(units, system)
+    require(scales, r=(KINDS["r"], r), beta=(KINDS["beta"], beta))
     r = checked_number(r, "r", KINDS["r"], scales, above=0.0, most=checks.LARGEST_RATIO)
     beta = checked_number(beta, "beta", KINDS["beta"], scales, above=0.0)
     mu = checks.number(mu, "mu", least=1.0)

@@ -15,6 +15,7 @@ response      `forced`, `friction_ratio`: amplitudes and lags of steady states
 time_series   `record`: steady motion of one mass in time, on a measured base
 joint_fit     `joint`: several decays and records at once
 chain         `sweep`: chains of masses without friction, base shaken
+loop          `loop`: force of a damper over a given motion
 likelihood    `log_likelihood`: the likelihood of the data of a fit, for samplers
 rigs          configurations of rigs, for the command `identify`
 ============  ==========================================================================
@@ -24,6 +25,7 @@ from .chain.sweep import sweep
 from .decay.free_decay import free_decay
 from .joint_fit.joint import joint
 from .likelihood import log_likelihood
+from .loop.loop import loop
 from .response.forced import forced
 from .response.phase_inversion import friction_ratio
 from .signals.integration import displacements
@@ -36,6 +38,7 @@ __all__ = [
     "friction_ratio",
     "joint",
     "log_likelihood",
+    "loop",
     "record",
     "sweep",
 ]

@@ -80,7 +80,11 @@ def checked_known(known: Mapping[str, float], valid: Sequence[str]) -> dict[str,
 
 
 def checked_free(
-    free: object, known: Collection[str], parameters: Sequence[str], file: bool = False
+    free: object,
+    known: Collection[str],
+    parameters: Sequence[str],
+    file: bool = False,
+    optional: Collection[str] = (),
 ) -> tuple[str, ...] | None:
     """Check a list of the parameters to fit: exactly those that are not known.
 
@@ -89,6 +93,7 @@ def checked_free(
 
     parameters : that can be fitted
     file : whether they are keys of a configuration, fit.free and [known]
+    optional : parameters that may be in neither list, beside those of contacts and channels
 
     Raises
     ------
@@ -105,7 +110,7 @@ def checked_free(
     for name in parameters:
         if name in free and name in known:
             raise InputError(f"cannot fit {name}: {table} holds it; remove it from {option} or from {table}")
-        if name not in free and name not in known and name not in _optional((*free, *known)):
+        if name not in (*free, *known, *optional, *_optional((*free, *known))):
             key = f"known.{name} to [known]" if file else "to known"
             raise InputError(f"cannot hold {name}: its value is missing; add {name} to {option} or {key}")
     return tuple(free)

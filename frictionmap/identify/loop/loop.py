@@ -1,0 +1,367 @@
+"""Friction, stiffnesses and damping of a damper from its force over a given displacement or velocity."""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ... import checks
+from ...errors import InputError
+from ..parameters import checked_free
+from ..signals.samples import finite_numbers, within
+from ..statistics.cautions import autocorrelation_warnings, correlation_warnings
+from ..statistics.estimates import estimates, number, verdict, with_error
+from ..statistics.least_squares import Errors, Solution, errors, undetermined
+from ..statistics.levels import FOUND
+from ..statistics.weights import estimated_weights
+from .branches import motion
+from .fit import Begun, LoopFit, begun, fit_loop, settled
+from .held import is_rigid, least_stiffness, nothing_slips, stuck_fit
+from .problem import BACKLASH, FRICTION, MU, NAMES, SPRING, STIFFNESS, DamperTest, modelled_force, places_of
+from .shape import displacement_of, reversals
+from .static_friction import Static, static_friction
+
+#: Most factors of a speed law.
+FACTORS = tuple(f"factor_{k}" for k in range(1, 9))
+
+#: What can be fitted or held; what is neither is absent: mu is 1, the others are 0.
+FITTABLE = (*NAMES, *FACTORS)
+USUAL = ("friction", "contact_stiffness", "offset")
+
+#: Ranges of known values, as `checks.number` takes them.
+_VALID: Mapping[str, Mapping[str, float]] = {
+    "friction": {"above": 0.0}, "contact_stiffness": {"above": 0.0}, "mu": {"least": 1.0},
+    "backlash": {"least": 0.0}, "asymmetry": {"above": -1.0, "below": 1.0}, "mass": {"least": 0.0},
+    **{name: {"least": 0.0} for name in FACTORS},
+}  # fmt: skip
+
+#: What is estimated, and its unit.
+MEANINGS = {
+    "friction": ("kinetic friction force, the mean of both directions", "N"),
+    "contact_stiffness": ("stiffness of the spring in the contact", "N/mm"),
+    "mu": ("static over kinetic friction force", "1"),
+    "backlash": ("play of the contact, from stop to stop", "mm"),
+    "asymmetry": ("difference of the friction of both directions over their sum", "1"),
+    "parallel_stiffness": ("stiffness of a spring beside the contact", "N/mm"),
+    "slope": ("viscous damping, force over velocity", "N s/mm"),
+    "mass": ("mass between the contact and the load cell", "kg"),
+    "delay": ("time by which the force is measured later than the motion", "s"),
+    "offset": ("force where the displacement reads zero, without friction", "N"),
+    "drift": ("drift of the zero of the force", "N/s"),
+} | {name: (f"friction at knot {k} of the speed law, over that at rest", "1") for k, name in enumerate(FACTORS, 1)}
+
+_VERDICTS = {
+    "friction": "friction in a contact with a spring",
+    "no_slip": "nothing slips: only the sum of the stiffnesses and a lower bound of the friction are known",
+    "rigid": "the contact slips at once: of its stiffness only a lower bound is known",
+    "backlash": "friction in a contact with play",
+    "speed_dependent": "friction that depends on the speed",
+    "peak": "static friction exceeds kinetic friction",
+}
+
+#: Singular values of scaled slopes below this share of the largest: not identifiable.
+_CONDITION = 1e-6
+
+#: Samples of a branch, below which a warning is due; shares of the motion that are polarity, not noise.
+_FEW, _AGAINST = 20, 0.02
+
+
+class _Result(NamedTuple):
+    """A fit, what is hidden of it, and the intervals that slopes do not give."""
+
+    fit: LoopFit
+    errors: Errors
+    code: str
+    more: dict[str, xr.Variable]
+    warnings: list[str]
+    values: np.ndarray  # NaN of what the test does not determine
+
+
+def loop(
+    time: Sequence[float] | np.ndarray,
+    force: Sequence[float] | np.ndarray,
+    *,
+    displacement: Sequence[float] | np.ndarray | None = None,
+    velocity: Sequence[float] | np.ndarray | None = None,
+    known: Mapping[str, float] | None = None,
+    free: Sequence[str] | None = None,
+    law_speeds: Sequence[float] | None = None,
+    window: object = None,
+) -> xr.Dataset:
+    """Fit the exact force of a spring with friction in series to a damper test, and its motion jointly.
+
+    Parameters
+    ----------
+    time : array, shape (samples,)
+        Times [s], increasing; equal steps are not needed.
+    force : array, shape (samples,)
+        Measured force [N], positive where the motion is.
+    displacement, velocity : array, shape (samples,)
+        What the actuator does [mm] or [mm/s]: one of both.
+    known : mapping
+        Parameters to be held, in the units of the results.
+    free : sequence of str
+        Parameters to be fitted; default: friction, contact_stiffness, offset, and the factors of a speed law,
+        unless they are known.  What is neither fitted nor known is absent: mu is 1, all others are 0.
+    law_speeds : sequence of numbers
+        Knots [mm/s] of the speed law, increasing from 0: factor_1 at the second one, and so on.  Between
+        knots it is linear; the last factor holds beyond the last knot.
+    window : [begin, end]
+        Times [s] of the part to be fitted; default: all.
+
+    Returns
+    -------
+    xarray.Dataset
+        On parameter: estimate, standard_error, lower and upper (95 %), `known`, unit; `correlation`; on
+        sample: time, motion, motion_model, data, model, residual (forces); scalars `sigma_force`, `sigma_motion`,
+        `slip_share`, `branches`, `condition`, `verdict`.  Attribute `warnings`.  Of mu there is an interval
+        only.  What the test does not determine is NaN, with a bound on one side where there is one.
+
+    Raises
+    ------
+    InputError
+        An argument is invalid; nothing moves back; parameters cannot be told apart; the force acts with the
+        motion instead of against it.
+
+    Notes
+    -----
+    The displacement is fitted together with the force, as its noise in a sampled model would be rectified:
+    it would make the friction too large and the stiffness too small.
+    """
+    test = _checked_test(time, force, displacement, velocity, law_speeds, window)
+    held, named = _held(known or {}, free, test)
+    _check_motion(test)
+    begin = begun(test, held)
+    result = _no_slip(begin, held) if nothing_slips(begin, held) else _slipping(begin, held)
+    return _dataset(result, held, named)
+
+
+def _checked_test(
+    time: object, force: object, displacement: object, velocity: object, law_speeds: object, window: object
+) -> DamperTest:
+    """Samples within the window, finite, times increasing."""
+    if (displacement is None) == (velocity is None):
+        given = "none" if displacement is None else "both"
+        raise InputError(f"loop must have displacement or velocity, one of both; got {given}")
+    times = checks.axis(time, "time", least=-np.inf)
+    name, moved = ("velocity", velocity) if displacement is None else ("displacement", displacement)
+    inside = within(window, times)
+    values = [finite_numbers(one, key, times.size, "time")[inside] for one, key in ((moved, name), (force, "force"))]
+    speeds = np.zeros(1) if law_speeds is None else checks.axis(law_speeds, "law_speeds", least=0.0)
+    if speeds[0] != 0.0 or speeds.size > len(FACTORS) + 1:
+        raise InputError(
+            f"law_speeds must begin with 0 and have at most {len(FACTORS) + 1} knots; got {checks.one_line(law_speeds)}"
+        )
+    return DamperTest(times[inside], values[0], values[1], int(displacement is None), speeds)
+
+
+def _held(
+    known: Mapping[str, float], free: Sequence[str] | None, test: DamperTest
+) -> tuple[np.ndarray, list[str]]:
+    """Values of what is held, NaN of what is fitted, and the names that were given."""
+    values = {}
+    for name, value in known.items():
+        checks.choice(name, "known", test.names)
+        values[name] = checks.number(value, f"known.{name}", **_VALID.get(name, {}))
+    usual = (*USUAL, *FACTORS[: test.factors])
+    fitted = checked_free(free, values, test.names, optional=test.names)
+    fitted = tuple(name for name in usual if name not in values) if fitted is None else fitted
+    for name in (*USUAL[:2], *FACTORS[: test.factors]):
+        if name not in fitted and name not in values:
+            raise InputError(f"cannot hold {name}: its value is missing; add {name} to free or to known")
+    if "asymmetry" in fitted and "offset" in fitted and "backlash" not in fitted and not values.get("backlash"):
+        raise InputError(
+            "cannot fit asymmetry together with offset without backlash: no sample shows the force without "
+            "friction; hold offset, or fit friction alone, which is the mean of both directions"
+        )
+    if "friction" not in fitted and "contact_stiffness" not in fitted:
+        raise InputError("free must hold friction or contact_stiffness; got neither")
+    absent = {name: float(name == "mu") for name in test.names}
+    held = np.array([np.nan if name in fitted else values.get(name, absent[name]) for name in test.names])
+    return held, [name for name in test.names if name in fitted or name in values]
+
+
+def _check_motion(test: DamperTest) -> None:
+    """Refuse a motion that does not turn back, and a force that drives it."""
+    turned = reversals(test.time, test.moved, test.order)
+    if turned.size < 2:
+        raise InputError(
+            f"cannot fit a loop: the motion turns back {turned.size} times in {test.time.size} samples, 2 "
+            "needed; measure at least one cycle"
+        )
+    u = displacement_of(test.time, test.moved, test.order)
+    closed = slice(turned[0], turned[-1] + 1 if turned.size % 2 else turned[-2] + 1)
+    if turned.size < 3:
+        return
+    work = float(np.trapezoid(test.force[closed], u[closed]))
+    whole = float(np.ptp(test.force) * np.ptp(u)) * (turned.size // 2)
+    if work < -_AGAINST * whole:
+        raise InputError(
+            f"the force must act against the motion of the damper; got work of {1e-3 * work:.4g} J in a record: the "
+            "polarity is reversed; give the column of the force scale = -1"
+        )
+
+
+def _no_slip(begin: Begun, held: np.ndarray) -> _Result:
+    """Only the sum of the stiffnesses, and the least friction."""
+    fit = stuck_fit(begin, held)
+    found = _errors(fit)
+    values = fit.solution.values[: fit.test.named].copy()
+    total, error = float(values[STIFFNESS]), float(found.standard_error[STIFFNESS])
+    model = fit.test.force + _force_residual(fit)
+    half = 0.5 * float(np.ptp(model))
+    alone = held[SPRING] == 0.0
+    lower, upper = found.lower.copy(), found.upper.copy()
+    unknown = [k for k in (FRICTION, STIFFNESS, SPRING, BACKLASH) if np.isnan(held[k])]
+    lower[unknown], upper[unknown] = 0.0, np.inf
+    if alone:
+        lower[FRICTION] = half
+    values[unknown] = np.nan
+    errors_of = found.standard_error.copy()
+    errors_of[unknown] = np.nan
+    bounded = found._replace(standard_error=errors_of, lower=lower, upper=upper)
+    words = "the contact never slips" + ("" if alone else "; beside a spring of unknown stiffness")
+    more = with_error("stiffness_sum", total, error, "contact_stiffness + parallel_stiffness", "N/mm")
+    more["friction_lower"] = number(half, "half the range of the force: friction is at least this if parallel_stiffness is 0", "N")
+    return _Result(fit, bounded, "no_slip", more, [
+        f"{words}: friction cannot be determined; contact_stiffness + parallel_stiffness is {total:.5g} "
+        f"+- {error:.2g} N/mm; increase the amplitude"
+    ], values)  # fmt: skip
+
+
+def _slipping(begin: Begun, held: np.ndarray) -> _Result:
+    fit, static = fit_loop(begin, held), None
+    if np.isnan(held[MU]):
+        static = static_friction(fit)
+        fit = static.fit
+    else:
+        fit = settled(fit.test, fit.layout, fit.problem.free[: fit.test.named], fit.solution)
+    forces = modelled_force(fit.test, fit.layout, fit.solution.values)
+    first = places_of(fit.test).displacement
+    branch = motion(fit.layout, fit.solution.values[first:], fit.test.time).branch
+    rigid = bool(np.isnan(held[STIFFNESS])) and is_rigid(fit, forces.slips, branch)
+    least = least_stiffness(fit) if rigid else None
+    if rigid:
+        fit = fit._replace(problem=_without(fit, STIFFNESS))
+    _check_identifiable(fit)
+    found = _errors(fit)
+    values = fit.solution.values[: fit.test.named].copy()
+    if least is not None:
+        values, found = _bounded(values, found, STIFFNESS, least, np.inf)
+    words = _cautions(fit, found, branch)
+    if least is not None:
+        words.append(f"the data do not determine contact_stiffness: any value above {least:.3g} N/mm explains them")
+    if static is not None:
+        values[MU] = 0.5 * (static.lower + static.upper)
+        values, found = _bounded(values, found, MU, static.lower, static.upper, values[MU])
+    return _Result(fit, found, _code(values, found, rigid, static, held), {}, words, values)
+
+
+def _without(fit: LoopFit, index: int):
+    free = fit.problem.free.copy()
+    free[index] = False
+    return fit.problem._replace(free=free)
+
+
+def _bounded(
+    values: np.ndarray, found: Errors, index: int, lower: float, upper: float, value: float = np.nan
+) -> tuple[np.ndarray, Errors]:
+    """Estimates with an interval, and no standard error, of one of them."""
+    parts = [part.copy() for part in (values, found.standard_error, found.lower, found.upper)]
+    for part, one in zip(parts, (value, np.nan, lower, upper), strict=True):
+        part[index] = one
+    return parts[0], found._replace(standard_error=parts[1], lower=parts[2], upper=parts[3])
+
+
+def _check_identifiable(fit: LoopFit) -> None:
+    """Refuse parameters that no sample can tell apart."""
+    together, deficient = undetermined(fit.problem, fit.solution, _CONDITION)
+    names = [fit.test.names[k] for k in together if k < fit.test.named]
+    if deficient and names:
+        raise InputError(
+            f"cannot determine {' and '.join(names)} from this test: the force depends on them in the same way; "
+            "hold one of them under known"
+        )
+
+
+def _errors(fit: LoopFit) -> Errors:
+    """Errors of the named parameters; the noise of both channels is estimated."""
+    kind = np.repeat((0, 1), fit.test.time.size)
+    scaling = estimated_weights(fit.problem, fit.solution, kind, np.ones(2, dtype=bool))
+    found = errors(fit.problem, fit.solution, 1.0, scaling=scaling)
+    named = slice(fit.test.named)
+    return found._replace(
+        standard_error=found.standard_error[named], lower=found.lower[named], upper=found.upper[named],
+        freedom=found.freedom[named], correlation=found.correlation[named, named],
+    )  # fmt: skip
+
+
+def _force_residual(fit: LoopFit) -> np.ndarray:
+    """Fitted less measured [N]."""
+    return fit.solution.residual[fit.test.time.size :] * fit.test.sigma_force
+
+
+def _code(
+    values: np.ndarray, found: Errors, rigid: bool, static: Static | None, held: np.ndarray
+) -> str:
+    """What was found: by estimates beyond three standard errors."""
+    if rigid:
+        return "rigid"
+    if static is not None and static.lower > 1.0:
+        return "peak"
+    error = found.standard_error
+    if np.isnan(held[BACKLASH]) and values[BACKLASH] > FOUND * error[BACKLASH]:
+        return "backlash"
+    law = np.flatnonzero(np.isnan(held[len(NAMES) :])) + len(NAMES)
+    if (np.abs(values[law] - 1.0) > FOUND * error[law]).any():
+        return "speed_dependent"
+    return "friction"
+
+
+def _cautions(fit: LoopFit, found: Errors, branch: np.ndarray) -> list[str]:
+    """Warnings about a fit."""
+    words = autocorrelation_warnings(found)
+    shown = np.flatnonzero(fit.problem.free[: fit.test.named])
+    words += correlation_warnings([fit.test.names[k] for k in shown], found.correlation[np.ix_(shown, shown)])
+    few = float(np.median(np.bincount(branch, minlength=fit.layout.branches)))
+    if few < _FEW:
+        words.append(f"{few:g} samples between two turning points: at least {_FEW} are needed for good estimates")
+    return words
+
+
+def _dataset(result: _Result, held: np.ndarray, named: list[str]) -> xr.Dataset:
+    """The dataset of a fit, of the parameters that were named."""
+    fit, test = result.fit, result.fit.test
+    k = np.array([test.names.index(name) for name in named])
+    found = result.errors
+    found = found._replace(
+        standard_error=found.standard_error[k], lower=found.lower[k], upper=found.upper[k],
+        freedom=found.freedom[k], correlation=found.correlation[np.ix_(k, k)],
+    )  # fmt: skip
+    solution = Solution(result.values[k], _force_residual(fit), np.empty((0, k.size)), np.zeros(k.size, dtype=bool))
+    ds = estimates(
+        {name: MEANINGS[name][0] for name in named}, [MEANINGS[name][1] for name in named], solution, found,
+        np.isnan(held[k]), test.force, "N", test.sigma_force,
+    )  # fmt: skip
+    return _described(ds, result)
+
+
+def _described(ds: xr.Dataset, result: _Result) -> xr.Dataset:
+    fit, test = result.fit, result.fit.test
+    forces = modelled_force(test, fit.layout, fit.solution.values)
+    unit = "mm/s" if test.order else "mm"
+    kind = "velocity" if test.order else "displacement"
+    ds["time"] = xr.Variable("sample", test.time, {"long_name": "time", "units": "s"})
+    ds["motion"] = xr.Variable("sample", test.moved, {"long_name": f"measured {kind}", "units": unit})
+    moved = test.moved + fit.solution.residual[: test.time.size] * test.sigma_moved
+    ds["motion_model"] = xr.Variable("sample", moved, {"long_name": f"fitted {kind}", "units": unit})
+    ds["sigma_force"] = number(test.sigma_force, "standard deviation of the noise of the force", "N")
+    ds["sigma_motion"] = number(test.sigma_moved, f"standard deviation of the noise of the {kind}", unit)
+    ds["slip_share"] = number(float(np.mean(forces.slips)), "share of the samples in which the contact slips")
+    ds["branches"] = number(float(fit.layout.branches), "branches of the motion between turning points")
+    ds["verdict"] = verdict(list(_VERDICTS).index(result.code), _VERDICTS)
+    ds = ds.assign(result.more)
+    ds.attrs["title"] = "Damper test"
+    ds.attrs["warnings"] = "; ".join(result.warnings)
+    return ds

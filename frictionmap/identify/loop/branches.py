@@ -1,8 +1,8 @@
 """The displacement between its turning points: a smooth curve, or a straight line, for each branch.
 
-On branch j, with x from -1 at t_j to 1 at t_{j+1}, a smooth displacement is the cubic from U_j to U_{j+1} with
-slopes of zero at turning points, and (1 - x^2)^2 sum_k c_jk P_k(x) with Legendre polynomials P_k.  The ends of
-the record are no turning points: the slopes there are unknown.
+On branch j, with x from -1 at t_j to 1 at t_{j+1}, a smooth displacement is the cubic from U_j to
+U_{j+1} with slopes of zero at turning points, and (1 - x^2)^2 sum_k c_jk P_k(x) with Legendre polynomials
+P_k.  The ends of the record are no turning points: the slopes there are unknown.
 """
 
 from functools import cache
@@ -49,7 +49,12 @@ class Layout(NamedTuple):
             return _functions(-1, ()), [j, j + 1]
         before = 2 * self.branches + 2 + sum(self.terms[:j])
         slopes = [2 * self.branches + end for end in open_ends]
-        return _functions(self.terms[j], open_ends), [j, j + 1, *range(before, before + self.terms[j]), *slopes]
+        return _functions(self.terms[j], open_ends), [
+            j,
+            j + 1,
+            *range(before, before + self.terms[j]),
+            *slopes,
+        ]
 
     @property
     def size(self) -> int:
@@ -108,7 +113,7 @@ def _branch(
     plain = np.einsum("nfs,f->ns", by_x, values[places])
     derivatives[:, here] = plain * scale[:, np.newaxis]
     for n in range(3):
-        slopes[n][np.ix_(here, places)] = by_x[n].T * scale[n]
+        slopes[n][np.ix_(here, np.array(places))] = by_x[n].T * scale[n]
         for node, x_by_node, shorter in ((j, -(1.0 - x) / length, 1.0), (j + 1, -(1.0 + x) / length, -1.0)):
             if 0 < node < layout.branches:
                 slopes[n][here, layout.branches + node] = scale[n] * (

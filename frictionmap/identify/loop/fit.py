@@ -31,7 +31,7 @@ class LoopFit(NamedTuple):
 
 
 class Begun(NamedTuple):
-    """A test whose displacement has been fitted alone, and fits of its force with that, the best one first."""
+    """A test whose displacement was fitted alone, and fits of its force with that, the best first."""
 
     test: DamperTest
     layout: Layout
@@ -57,8 +57,11 @@ def fit_loop(begin: Begun, held: np.ndarray) -> LoopFit:
     return LoopFit(test, begin.layout, usable(task, best), best)
 
 
-def settled(test: DamperTest, layout: Layout, free: np.ndarray, best: Solution, held_state: bool = False) -> LoopFit:
+def settled(
+    test: DamperTest, layout: Layout, free: np.ndarray, best: Solution, held_state: bool = False
+) -> LoopFit:
     """The fit with the noise that its residuals show."""
+
     def task_of(test: DamperTest) -> Problem:
         task = problem(test, layout, free)
         task.free[test.named] &= not held_state
@@ -71,7 +74,9 @@ def settled(test: DamperTest, layout: Layout, free: np.ndarray, best: Solution, 
         freedom = freedom_by_kind(best, seen.free, kind)
         squares = np.bincount(kind, best.residual**2)
         moved, force = np.sqrt(squares / freedom)
-        test = test._replace(sigma_moved=test.sigma_moved * float(moved), sigma_force=test.sigma_force * float(force))
+        test = test._replace(
+            sigma_moved=test.sigma_moved * float(moved), sigma_force=test.sigma_force * float(force)
+        )
         task = task_of(test)
         best = minimise(task, best.values, _STEPS)
     return LoopFit(test, layout, usable(task, best), best)

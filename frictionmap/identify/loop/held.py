@@ -5,7 +5,21 @@ import numpy as np
 from ..statistics.least_squares import Solution, minimise
 from .branches import motion
 from .fit import Begun, LoopFit, settled
-from .problem import BACKLASH, DRIFT, FRICTION, MASS, OFFSET, SLOPE, SPRING, STIFFNESS, places_of, problem
+from .problem import (
+    ASYMMETRY,
+    BACKLASH,
+    DRIFT,
+    FRICTION,
+    MASS,
+    MU,
+    NAMES,
+    OFFSET,
+    SLOPE,
+    SPRING,
+    STIFFNESS,
+    places_of,
+    problem,
+)  # fmt: skip
 
 #: Growth of the sum by which friction is found: three standard errors of each of its two unknowns.
 _FOUND = 18.0
@@ -42,11 +56,13 @@ def stuck_fit(begin: Begun, held: np.ndarray) -> LoopFit:
     """The fit of a contact that never slips: its stiffness is that of both springs."""
     test, layout = begin.test, begin.layout
     free = np.isnan(held)
-    free[[FRICTION, SPRING, BACKLASH]] = False
+    free[[FRICTION, SPRING, BACKLASH, ASYMMETRY, MU]] = False
+    free[len(NAMES) :] = False
     free[[STIFFNESS, OFFSET]] = True
     reach = float(np.ptp(test.force))
     values = begin.starts[0].values.copy()
     values[: test.named] = np.where(np.isnan(held), 0.0, held)
+    values[MU] = 1.0
     values[[FRICTION, SPRING, BACKLASH]] = 10.0 * reach, 0.0, 0.0  # beyond what the force reaches
     span = float(np.ptp(motion(layout, begin.shape, test.time).derivatives[0]))
     values[[STIFFNESS, OFFSET, test.named]] = reach / span, float(test.force[0]), 0.0

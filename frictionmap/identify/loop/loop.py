@@ -12,13 +12,25 @@ from ..parameters import checked_free
 from ..signals.samples import finite_numbers, within
 from ..statistics.cautions import autocorrelation_warnings, correlation_warnings
 from ..statistics.estimates import estimates, number, verdict, with_error
-from ..statistics.least_squares import Errors, Solution, errors, undetermined
+from ..statistics.least_squares import Errors, Problem, Solution, errors, undetermined
 from ..statistics.levels import FOUND
 from ..statistics.weights import estimated_weights
 from .branches import motion
 from .fit import Begun, LoopFit, begun, fit_loop, settled
 from .held import is_rigid, least_stiffness, nothing_slips, stuck_fit
-from .problem import BACKLASH, FRICTION, MU, NAMES, SPRING, STIFFNESS, DamperTest, modelled_force, places_of
+from .problem import (
+    ASYMMETRY,
+    BACKLASH,
+    FRICTION,
+    MU,
+    NAMES,
+    OFFSET,
+    SPRING,
+    STIFFNESS,
+    DamperTest,
+    modelled_force,
+    places_of,
+)  # fmt: skip
 from .shape import displacement_of, reversals
 from .static_friction import Static, static_friction
 
@@ -32,7 +44,7 @@ USUAL = ("friction", "contact_stiffness", "offset")
 #: Ranges of known values, as `checks.number` takes them.
 _VALID: Mapping[str, Mapping[str, float]] = {
     "friction": {"above": 0.0}, "contact_stiffness": {"above": 0.0}, "mu": {"least": 1.0},
-    "backlash": {"least": 0.0}, "asymmetry": {"above": -1.0, "below": 1.0}, "mass": {"least": 0.0},
+    "backlash": {"least": 0.0}, "asymmetry": {"above": -1.0, "most": 1.0}, "mass": {"least": 0.0},
     **{name: {"least": 0.0} for name in FACTORS},
 }  # fmt: skip
 
@@ -49,7 +61,10 @@ MEANINGS = {
     "delay": ("time by which the force is measured later than the motion", "s"),
     "offset": ("force where the displacement reads zero, without friction", "N"),
     "drift": ("drift of the zero of the force", "N/s"),
-} | {name: (f"friction at knot {k} of the speed law, over that at rest", "1") for k, name in enumerate(FACTORS, 1)}
+} | {
+    name: (f"friction at knot {k} of the speed law, over that at rest", "1")
+    for k, name in enumerate(FACTORS, 1)
+}
 
 _VERDICTS = {
     "friction": "friction in a contact with a spring",
@@ -114,14 +129,14 @@ def loop(
     -------
     xarray.Dataset
         On parameter: estimate, standard_error, lower and upper (95 %), `known`, unit; `correlation`; on
-        sample: time, motion, motion_model, data, model, residual (forces); scalars `sigma_force`, `sigma_motion`,
-        `slip_share`, `branches`, `condition`, `verdict`.  Attribute `warnings`.  Of mu there is an interval
+        sample: time, motion, motion_model, data, model and residual of the force; scalars `sigma_force`,
+        `sigma_motion`, `slip_share`, `branches`, `verdict`.  Attribute `warnings`.  Of mu there is an interval
         only.  What the test does not determine is NaN, with a bound on one side where there is one.
 
     Raises
     ------
     InputError
-        An argument is invalid; nothing moves back; parameters cannot be told apart; the force acts with the
+        An argument is invalid; nothing moves back; parameters cannot be separated; the force acts with the
         motion instead of against it.
 
     Notes
@@ -147,11 +162,14 @@ def _checked_test(
     times = checks.axis(time, "time", least=-np.inf)
     name, moved = ("velocity", velocity) if displacement is None else ("displacement", displacement)
     inside = within(window, times)
-    values = [finite_numbers(one, key, times.size, "time")[inside] for one, key in ((moved, name), (force, "force"))]
+    values = [
+        finite_numbers(one, key, times.size, "time")[inside] for one, key in ((moved, name), (force, "force"))
+    ]
     speeds = np.zeros(1) if law_speeds is None else checks.axis(law_speeds, "law_speeds", least=0.0)
     if speeds[0] != 0.0 or speeds.size > len(FACTORS) + 1:
         raise InputError(
-            f"law_speeds must begin with 0 and have at most {len(FACTORS) + 1} knots; got {checks.one_line(law_speeds)}"
+            f"law_speeds must begin with 0 and have at most {len(FACTORS) + 1} knots; "
+            f"got {checks.one_line(law_speeds)}"
         )
     return DamperTest(times[inside], values[0], values[1], int(displacement is None), speeds)
 
@@ -170,7 +188,12 @@ def _held(
     for name in (*USUAL[:2], *FACTORS[: test.factors]):
         if name not in fitted and name not in values:
             raise InputError(f"cannot hold {name}: its value is missing; add {name} to free or to known")
-    if "asymmetry" in fitted and "offset" in fitted and "backlash" not in fitted and not values.get("backlash"):
+    if (
+        "asymmetry" in fitted
+        and "offset" in fitted
+        and "backlash" not in fitted
+        and not values.get("backlash")
+    ):
         raise InputError(
             "cannot fit asymmetry together with offset without backlash: no sample shows the force without "
             "friction; hold offset, or fit friction alone, which is the mean of both directions"
@@ -198,7 +221,7 @@ def _check_motion(test: DamperTest) -> None:
     whole = float(np.ptp(test.force) * np.ptp(u)) * (turned.size // 2)
     if work < -_AGAINST * whole:
         raise InputError(
-            f"the force must act against the motion of the damper; got work of {1e-3 * work:.4g} J in a record: the "
+            f"the force must act against the motion of the damper; got work of {1e-3 * work:.4g} J: the "
             "polarity is reversed; give the column of the force scale = -1"
         )
 
@@ -213,9 +236,12 @@ def _no_slip(begin: Begun, held: np.ndarray) -> _Result:
     half = 0.5 * float(np.ptp(model))
     alone = held[SPRING] == 0.0
     lower, upper = found.lower.copy(), found.upper.copy()
-    unknown = [k for k in (FRICTION, STIFFNESS, SPRING, BACKLASH) if np.isnan(held[k])]
+    unknown = [k for k in (FRICTION, STIFFNESS, SPRING, BACKLASH, MU, ASYMMETRY, OFFSET) if np.isnan(held[k])]
+    unknown += [k for k in range(len(NAMES), fit.test.named) if np.isnan(held[k])]
     lower[unknown], upper[unknown] = 0.0, np.inf
-    if alone:
+    signed = [k for k in unknown if k in (ASYMMETRY, OFFSET)]
+    lower[signed] = -np.inf
+    if alone and np.isnan(held[FRICTION]):
         lower[FRICTION] = half
     values[unknown] = np.nan
     errors_of = found.standard_error.copy()
@@ -223,7 +249,9 @@ def _no_slip(begin: Begun, held: np.ndarray) -> _Result:
     bounded = found._replace(standard_error=errors_of, lower=lower, upper=upper)
     words = "the contact never slips" + ("" if alone else "; beside a spring of unknown stiffness")
     more = with_error("stiffness_sum", total, error, "contact_stiffness + parallel_stiffness", "N/mm")
-    more["friction_lower"] = number(half, "half the range of the force: friction is at least this if parallel_stiffness is 0", "N")
+    more["friction_lower"] = number(
+        half, "half the range of the force: friction is at least this if parallel_stiffness is 0", "N"
+    )
     return _Result(fit, bounded, "no_slip", more, [
         f"{words}: friction cannot be determined; contact_stiffness + parallel_stiffness is {total:.5g} "
         f"+- {error:.2g} N/mm; increase the amplitude"
@@ -251,14 +279,16 @@ def _slipping(begin: Begun, held: np.ndarray) -> _Result:
         values, found = _bounded(values, found, STIFFNESS, least, np.inf)
     words = _cautions(fit, found, branch)
     if least is not None:
-        words.append(f"the data do not determine contact_stiffness: any value above {least:.3g} N/mm explains them")
+        words.append(
+            f"the data do not determine contact_stiffness: any value above {least:.3g} N/mm explains them"
+        )
     if static is not None:
         values[MU] = 0.5 * (static.lower + static.upper)
         values, found = _bounded(values, found, MU, static.lower, static.upper, values[MU])
     return _Result(fit, found, _code(values, found, rigid, static, held), {}, words, values)
 
 
-def _without(fit: LoopFit, index: int):
+def _without(fit: LoopFit, index: int) -> Problem:
     free = fit.problem.free.copy()
     free[index] = False
     return fit.problem._replace(free=free)
@@ -275,12 +305,12 @@ def _bounded(
 
 
 def _check_identifiable(fit: LoopFit) -> None:
-    """Refuse parameters that no sample can tell apart."""
+    """Refuse parameters that the samples do not determine separately."""
     together, deficient = undetermined(fit.problem, fit.solution, _CONDITION)
     names = [fit.test.names[k] for k in together if k < fit.test.named]
     if deficient and names:
         raise InputError(
-            f"cannot determine {' and '.join(names)} from this test: the force depends on them in the same way; "
+            f"cannot determine {' and '.join(names)} from this test: the force depends on them alike; "
             "hold one of them under known"
         )
 
@@ -302,9 +332,7 @@ def _force_residual(fit: LoopFit) -> np.ndarray:
     return fit.solution.residual[fit.test.time.size :] * fit.test.sigma_force
 
 
-def _code(
-    values: np.ndarray, found: Errors, rigid: bool, static: Static | None, held: np.ndarray
-) -> str:
+def _code(values: np.ndarray, found: Errors, rigid: bool, static: Static | None, held: np.ndarray) -> str:
     """What was found: by estimates beyond three standard errors."""
     if rigid:
         return "rigid"
@@ -326,7 +354,7 @@ def _cautions(fit: LoopFit, found: Errors, branch: np.ndarray) -> list[str]:
     words += correlation_warnings([fit.test.names[k] for k in shown], found.correlation[np.ix_(shown, shown)])
     few = float(np.median(np.bincount(branch, minlength=fit.layout.branches)))
     if few < _FEW:
-        words.append(f"{few:g} samples between two turning points: at least {_FEW} are needed for good estimates")
+        words.append(f"{few:g} samples between two turning points: at least {_FEW} are needed")
     return words
 
 
@@ -339,7 +367,9 @@ def _dataset(result: _Result, held: np.ndarray, named: list[str]) -> xr.Dataset:
         standard_error=found.standard_error[k], lower=found.lower[k], upper=found.upper[k],
         freedom=found.freedom[k], correlation=found.correlation[np.ix_(k, k)],
     )  # fmt: skip
-    solution = Solution(result.values[k], _force_residual(fit), np.empty((0, k.size)), np.zeros(k.size, dtype=bool))
+    solution = Solution(
+        result.values[k], _force_residual(fit), np.empty((0, k.size)), np.zeros(k.size, dtype=bool)
+    )
     ds = estimates(
         {name: MEANINGS[name][0] for name in named}, [MEANINGS[name][1] for name in named], solution, found,
         np.isnan(held[k]), test.force, "N", test.sigma_force,

@@ -79,12 +79,16 @@ def forces(element: Element, places: Places, layout: Layout, values: np.ndarray,
         own = np.tile(by, (here.size, 1))
         own[:, of_u] += at.slopes[0][here]
         own[:, places.displacement + j] -= 1.0
-        slipping, broke[j] = _slips(element, sense, w, np.abs(at.derivatives[1, here]), carried + ends[j + 1] - ends[j])
+        slipping, broke[j] = _slips(
+            element, sense, w, np.abs(at.derivatives[1, here]), carried + ends[j + 1] - ends[j]
+        )
         slips[here] = slipping
         force[here], slopes[here] = _held(element, places, w, own)
         late = here[slipping]
         if late.size:
-            force[late], slopes[late] = _slipping(element, places, sense, at.derivatives[1, late], at.slopes[1][late], of_u)
+            force[late], slopes[late] = _slipping(
+                element, places, sense, at.derivatives[1, late], at.slopes[1][late], of_u
+            )
         carried, by = _after(element, places, sense, bool(broke[j]), carried, by, ends, j)
     return Forces(force, slopes, slips, broke)
 
@@ -94,7 +98,9 @@ def _strength(element: Element, sense: float) -> float:
     return element.friction * (1.0 + sense * element.asymmetry)
 
 
-def _slips(element: Element, sense: float, w: np.ndarray, speed: np.ndarray, last: float) -> tuple[np.ndarray, bool]:
+def _slips(
+    element: Element, sense: float, w: np.ndarray, speed: np.ndarray, last: float
+) -> tuple[np.ndarray, bool]:
     """Which samples of a branch slip, and whether it slips before its end."""
     reach = _strength(element, sense) / element.stiffness
     limit = np.maximum(element.mu, factor(element, speed)[0]) * reach + 0.5 * element.backlash

@@ -7,7 +7,16 @@ import numpy as np
 from ..statistics.least_squares import Solution, minimise
 from .branches import Layout, motion
 from .problem import (
-    BACKLASH, FRICTION, MU, OFFSET, SPRING, STIFFNESS, DamperTest, modelled_force, places_of, problem,
+    BACKLASH,
+    FRICTION,
+    MU,
+    OFFSET,
+    SPRING,
+    STIFFNESS,
+    DamperTest,
+    modelled_force,
+    places_of,
+    problem,
 )  # fmt: skip
 
 #: The share of a branch, at its end, on which the contact is taken to slip.
@@ -28,13 +37,15 @@ def starts(test: DamperTest, layout: Layout, shape: np.ndarray, held: np.ndarray
     """Fits of the force with the displacement held, the best one first.
 
     shape : unknowns of the displacement
-    held : (named,) values of what is known, NaN: fitted
+    held : (named,) values that are held, NaN: fitted
     """
     begin = _sliding(test, layout, shape, held)
     begin[FRICTION] = abs(begin[FRICTION])
     free = np.isnan(held)
     reach = float(np.ptp(motion(layout, shape, test.time).derivatives[0]))
-    stiffnesses = [begin[FRICTION] / reach * one for one in _STIFFNESSES] if free[STIFFNESS] else [held[STIFFNESS]]
+    stiffnesses = (
+        [begin[FRICTION] / reach * one for one in _STIFFNESSES] if free[STIFFNESS] else [held[STIFFNESS]]
+    )
     plays = [one * reach for one in _PLAYS] if free[BACKLASH] else [held[BACKLASH]]
     statics = [_peak(test, layout, begin)] if free[MU] else [held[MU]]
     task = problem(test, layout, free & (np.arange(free.size) != MU), fixed_motion=True)
@@ -74,7 +85,9 @@ def _peak(test: DamperTest, layout: Layout, values: np.ndarray) -> float:
     shape = values[places_of(test).displacement :]
     branch = motion(layout, shape, test.time).branch
     sense = np.sign(np.diff(shape[: layout.branches + 1]))
-    peaks = [float(np.max(sense[j] * rest[branch == j])) for j in range(layout.branches) if (branch == j).any()]
+    peaks = [
+        float(np.max(sense[j] * rest[branch == j])) for j in range(layout.branches) if (branch == j).any()
+    ]
     return max(float(np.max(peaks)) / values[FRICTION], 1.0)
 
 

@@ -1,14 +1,14 @@
 """Static over kinetic friction: an interval, from the profile of the sum of squares.
 
-The force drops by (mu - 1) F between two samples.  Which two changes by steps as mu grows, so that the sum has
-no derivative by mu: it is the least for all mu of an interval.
+The force drops by (mu - 1) F between two samples.  Which two changes by steps as mu grows, so that the sum
+has no derivative by mu: it is the least for all mu of an interval.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ..statistics.least_squares import Problem, Solution, minimise
+from ..statistics.least_squares import Solution, minimise
 from .branches import motion
 from .fit import LoopFit, settled
 from .problem import FRICTION, MU, STIFFNESS, places_of

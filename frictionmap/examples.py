@@ -29,6 +29,7 @@ TRUTHS: Mapping[str, Mapping[str, float]] = {
     "forced": {"beta_1": 0.2, "beta_2": 0.4, "f_n": 3.12, "zeta": 0.008},
     "sweep": {"f0": 3.1, "f1": 1.85, "f2": 4.9},
     "record": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.7, "mu": 1.2, "offset_x": -0.1},
+    "loop": {"friction": 60.0, "contact_stiffness": 150.0, "offset": 2.0},
     "forced-spring": {"beta_1": 0.4, "beta_2": 0.8, "f_n": 3.12, "zeta": 0.008, "contact_stiffness": 3.0},
     "record-spring": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.9, "contact_stiffness": 3.0, "offset_x": -0.1},
 }
@@ -47,6 +48,10 @@ _BASE, _LAG_ERROR, _AMPLITUDE_ERROR = 1.75, 0.7, 0.01
 _SHAKEN_AT, _HARMONICS = 1.0, (0.0, 1.75, 0.018j)
 _RECORD_RATE, _RECORD_LENGTH, _RECORD_ERRORS = 100, 8, (0.01, 0.003)
 _SPRING_LENGTH = 4
+
+#: Rate [1/s] and number of samples of a damper test, steps between two of them; amplitude [mm]; errors
+#: [mm, N].
+_LOOP_RATE, _LOOP_SAMPLES, _LOOP_FINE, _LOOP_AMPLITUDE, _LOOP_ERRORS = 200, 600, 50, 1.6, (0.003, 0.5)
 
 _HEAD = """\
 # Above each key: its meaning and its valid values.  A line that begins with # and a key shows the default or,
@@ -161,6 +166,7 @@ excitation = "base"
 damping_reference = "base"
 """,
     ),
+    "loop": ("A friction damper that an actuator moves to and fro, N and mm", ""),
     "forced-spring": (
         "One storey on a shaken base, with a spring in the contact and two friction forces",
         """sigma_phase_deg = 0.7
@@ -270,6 +276,26 @@ def _record(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
     return _table("time_s,base_mm,x_mm", (time, "g"), (channels[1], ".4f"), (channels[0], ".4f"))
 
 
+def _loop(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
+    """Simulate a damper that follows a cosine: the spring's force is added up, and friction limits it."""
+    time = np.arange(_LOOP_SAMPLES * _LOOP_FINE) / (_LOOP_RATE * _LOOP_FINE)
+    u = _LOOP_AMPLITUDE * np.cos(2.0 * np.pi * time)
+    force, carried = np.empty(time.size), 0.0
+    for k, step in enumerate(np.diff(u, prepend=u[0])):
+        carried += truth["contact_stiffness"] * float(step)
+        force[k] = carried = min(max(carried, -truth["friction"]), truth["friction"])
+    channels = [
+        values[::_LOOP_FINE] + rng.normal(0.0, error, _LOOP_SAMPLES)
+        for values, error in zip((u, force + truth["offset"]), _LOOP_ERRORS, strict=True)
+    ]
+    return _table(
+        "time_s,displacement_mm,force_N",
+        (time[::_LOOP_FINE], "g"),
+        (channels[0], ".4f"),
+        (channels[1], ".3f"),
+    )
+
+
 def _table(names: str, *columns: tuple[np.ndarray, str]) -> str:
     """Rows of a table, every column in its format."""
     rows = zip(*([format(value, how) for value in values.tolist()] for values, how in columns), strict=True)
@@ -284,6 +310,7 @@ _TABLES: Mapping[str, Callable[[np.random.Generator, Mapping[str, float]], str]]
     "record": _record,
     "forced-spring": _forced,
     "record-spring": _record,
+    "loop": _loop,
 }
 
 if __name__ == "__main__":

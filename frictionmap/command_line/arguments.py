@@ -34,7 +34,7 @@ __all__ = [
 #: Valid contacts of `System` and kinds of data of `identify`.  They are repeated here because importing them
 #: would take longer than all of `--help`; a test compares them.
 CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
-RIGS = ("free-decay", "forced", "record", "sweep")
+RIGS = ("free-decay", "forced", "record", "sweep", "loop")
 
 #: Shells that shtab knows; repeated here as the above, and compared by the same test.
 SHELLS = ("bash", "zsh", "tcsh", "fish", "powershell")

@@ -274,7 +274,7 @@ def test_keys_of_rigs_are_those_of_their_kinds(kind):
     of = KINDS[kind]
     data = ("kind", "file", "columns", "decimal", "missing", *(key.name for key in of.data))
     assert tables["data"] == [*data]
-    assert set(tables["known"]) == {*of.parameters, *of.known}
+    assert set(tables["known"]) == {*of.parameters, *of.known, *(key.name for key in of.lists)}
     assert set(tables.get("fit", ())) == {*(key.name for key in of.fit), *(["free"] if of.parameters else [])}
     systems = {
         "record": RECORD_SYSTEM,

@@ -130,8 +130,8 @@ def loop(
     xarray.Dataset
         On parameter: estimate, standard_error, lower and upper (95 %), `known`, unit; `correlation`; on
         sample: time, motion, motion_model, data, model and residual of the force; scalars `sigma_force`,
-        `sigma_motion`, `slip_share`, `branches`, `verdict`.  Attribute `warnings`.  Of mu there is an interval
-        only.  What the test does not determine is NaN, with a bound on one side where there is one.
+        `sigma_motion`, `slip_share`, `branches`, `verdict`.  Attribute `warnings`.  Of mu there is an
+        interval only.  What the test does not determine is NaN, with a bound on one side where there is one.
 
     Raises
     ------

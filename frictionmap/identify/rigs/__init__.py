@@ -9,6 +9,7 @@ forced         forced responses from the file of a rig
 record         records of steady motion from the file of a rig
 joint          several decays and records from the files of a rig
 sweep          sweeps from the file of a rig
+loop           damper tests from the file of a rig
 configuration  configurations, read and checked; the kinds of data
 keys           keys of these configurations, in words and as JSON Schema
 =============  =============================================================

@@ -26,12 +26,13 @@ from ..tables.text_files import checked_decimal
 from .decay import FREE_DECAY
 from .forced import FORCED
 from .joint import JOINT, checked_data, data_paths, fit_together
+from .loop import LOOP
 from .record import RECORD
 from .rig import Kind, Rig
 from .sweep import SWEEP
 
 #: Description of every kind of data.
-KINDS = {"free-decay": FREE_DECAY, "forced": FORCED, "record": RECORD, "sweep": SWEEP}
+KINDS = {"free-decay": FREE_DECAY, "forced": FORCED, "record": RECORD, "sweep": SWEEP, "loop": LOOP}
 
 
 #: What several measurements in tables [[data]] are called.
@@ -71,7 +72,7 @@ def load_rig(path: str | Path, overrides: Sequence[str] = ()) -> Rig:
     return Rig(
         _title(tree, Path(file).stem), name, source, {}, choices,
         checked_decimal(data.get("decimal"), "data.decimal"),
-        _chosen(data, kind.data), missing,
+        _chosen(data, kind.data) | _chosen(known, kind.lists), missing,
         _table(tree, "system"), values, free, _chosen(fit, kind.fit), text, path.stem, (path, source),
     )  # fmt: skip
 
@@ -150,7 +151,7 @@ def _check_keys(tree: Mapping[str, object], name: str, kind: Kind) -> None:
     """Refuse unknown keys of the kind; [system] is checked as in maps, where it is used."""
     sections = {
         "data": ("kind", "file", "columns", "decimal", "missing", *(key.name for key in kind.data)),
-        "known": tuple(kind.numbers),
+        "known": (*kind.numbers, *(key.name for key in kind.lists)),
         "fit": ("free", *(key.name for key in kind.fit)),
     }
     valid = ("title", *sections, *(("system",) if kind.system else ()))
@@ -172,13 +173,14 @@ def _held_and_free(
     known: Mapping[str, object], fit: Mapping[str, object], kind: Kind
 ) -> tuple[dict[str, float], tuple[str, ...] | None]:
     """Numbers of [known], and fit.free, which must list exactly the parameters that are not known."""
-    values = {key: _known_number(value, key, kind) for key, value in known.items()}
+    lists = [key.name for key in kind.lists]
+    values = {key: _known_number(value, key, kind) for key, value in known.items() if key not in lists}
     free = fit.get("free")
     if free is not None and not kind.parameters:
         raise InputError(
             "cannot use fit.free for this kind of data: all parameters not in [known] are fitted; omit it"
         )
-    return values, checked_free(free, values, tuple(kind.parameters), file=True)
+    return values, checked_free(free, values, tuple(kind.parameters), file=True, optional=kind.optional)
 
 
 def _known_number(value: object, key: str, kind: Kind) -> float:

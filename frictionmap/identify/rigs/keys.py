@@ -88,7 +88,7 @@ def rig_keys(kind: str) -> dict[str, tuple[Key, ...]]:
         "": (_TITLE,),
         "data": tuple(_with_example(key, kind) for key in (*_DATA, *of.data)),
         "system": of.system,
-        "known": tuple(_known(*item) for item in of.numbers.items()),
+        "known": (*(_known(*item) for item in of.numbers.items()), *of.lists),
         "fit": tuple(_with_example(key, kind) for key in fit),
     }
     return {name: keys for name, keys in tables.items() if keys}

@@ -93,6 +93,8 @@ class Kind(NamedTuple):
     system: tuple[Key, ...] = ()  # of the table [system]; none: there is no such table
     needs_system: bool = False
     examples: Mapping[str, str] = {}  # of keys whose example is another one than for other kinds
+    lists: tuple[Key, ...] = ()  # further keys of [known], which hold lists of numbers
+    optional: tuple[str, ...] = ()  # parameters that may be neither known nor free
 
     @property
     def numbers(self) -> dict[str, Parameter]:

@@ -13,6 +13,7 @@ responses  panels of amplitudes and lags over frequency
 chain      sweeps of chains
 forced     forced responses with the curves of their sets
 record     records in time, and their cycles superimposed
+loop       damper tests in time, and as force over motion
 figure     choice of these pictures, and their layout
 =========  =====================================================
 """

@@ -17,6 +17,7 @@ from .chain import chain_picture, is_chain
 from .data import about_residuals
 from .decay import decay_picture, is_decay
 from .forced import forced_picture, is_forced
+from .loop import is_loop, loop_picture
 from .picture import FitPicture
 from .record import is_record, record_picture
 from .samples import samples_picture
@@ -81,6 +82,8 @@ def plot_fit(
 
 
 def _picture(ds: xr.Dataset) -> FitPicture:
+    if is_loop(ds):
+        return loop_picture(ds)
     if is_decay(ds):
         return decay_picture(ds)
     if is_record(ds):

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import frictionmap
 from frictionmap.errors import InputError
 from frictionmap.identify import loop
 from frictionmap.identify.loop.branches import Layout
@@ -151,3 +152,11 @@ def test_reference_loops(name: str, reference_path: Callable[[str], Path]) -> No
             assert 0.8 < one["standard_error"] / row["standard_error"] < 1.25, parameter
     if name == "held":
         assert abs(float(ds["stiffness_sum"]) - 420.0) < 4.0 * float(ds["stiffness_sum_standard_error"])
+
+
+def test_picture_of_force_over_motion() -> None:
+    time, u, force = measured(1)
+    axes = frictionmap.plot_fit(loop(time, force, displacement=u))
+    assert len(axes) == 3
+    assert np.array_equal(axes[2].lines[0].get_xdata(), u)
+    assert np.array_equal(axes[2].lines[0].get_ydata(), force)

@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..statistics.least_squares import Problem, Solution, minimise
+from ..statistics.least_squares import Problem, Solution
 from ..statistics.weights import freedom_by_kind
 from .branches import Layout
+from .descent import descend
 from .problem import MU, DamperTest, problem
 from .shape import shape_fit
 from .starts import starts
@@ -16,6 +17,10 @@ _REFINED, _STEPS = 4, 60
 
 #: Forces whose residuals are smaller [N] are exact: sums of them are rounding.
 _EXACT = 1e-9
+
+#: Growth of the sum by which a break-away is another one than that of the law: three standard errors of one
+#: unknown.
+_WORSE = 9.0
 
 #: Rounds in which the noise of both channels is found.
 _ROUNDS = 3
@@ -40,9 +45,17 @@ class Begun(NamedTuple):
 
 
 def begun(test: DamperTest, held: np.ndarray) -> Begun:
-    """Fit the displacement, and then the force; `held`: (named,), NaN of what is fitted."""
+    """Fit the displacement, and then the force; `held`: (named,), NaN of what is fitted.
+
+    Where the force may drop as the contact breaks away, the sample at which it does hops with the
+    parameters, and the sum has many minima.  The sum in which the measured force shows this sample has none
+    of them, and nearly the same slopes.
+    """
     layout, shape = shape_fit(test.time, test.moved, test.order)
-    test = test._replace(sigma_moved=float(np.sqrt(shape.sum / (test.time.size - layout.size))))
+    test = test._replace(
+        sigma_moved=float(np.sqrt(shape.sum / (test.time.size - layout.size))),
+        break_seen=bool(held[MU] != 1.0) or test.factors > 0,
+    )
     return Begun(test, layout, shape.values, starts(test, layout, shape.values, held))
 
 
@@ -52,9 +65,21 @@ def fit_loop(begin: Begun, held: np.ndarray) -> LoopFit:
     test = begin.test._replace(sigma_force=max(float(np.sqrt(best.sum / begin.test.time.size)), _EXACT))
     free = np.isnan(held) & (np.arange(held.size) != MU)
     task = problem(test, begin.layout, free)
-    found = [minimise(task, one.values, _STEPS) for one in begin.starts[:_REFINED]]
+    found = [descend(task, one.values, _STEPS) for one in begin.starts[:_REFINED]]
     best = min(found, key=lambda one: one.sum)
     return LoopFit(test, begin.layout, usable(task, best), best)
+
+
+def by_law(fit: LoopFit) -> LoopFit:
+    """The fit in which the contact breaks away where (L1) says, if that explains the force as well."""
+    if not fit.test.break_seen:
+        return fit
+    test = fit.test._replace(break_seen=False)
+    task = problem(test, fit.layout, fit.problem.free[: test.named])
+    best = descend(task, fit.solution.values, _STEPS)
+    if best.sum > fit.solution.sum + _WORSE:
+        return fit
+    return LoopFit(test, fit.layout, usable(task, best), best)
 
 
 def settled(
@@ -78,7 +103,7 @@ def settled(
             sigma_moved=test.sigma_moved * float(moved), sigma_force=test.sigma_force * float(force)
         )
         task = task_of(test)
-        best = minimise(task, best.values, _STEPS)
+        best = descend(task, best.values, _STEPS)
     return LoopFit(test, layout, usable(task, best), best)
 
 

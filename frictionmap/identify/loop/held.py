@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from ..statistics.least_squares import Solution, minimise
+from ..statistics.least_squares import Solution
 from .branches import motion
+from .descent import descend
 from .fit import Begun, LoopFit, settled
 from .problem import (
     ASYMMETRY,
@@ -17,6 +18,7 @@ from .problem import (
     SLOPE,
     SPRING,
     STIFFNESS,
+    modelled_force,
     places_of,
     problem,
 )  # fmt: skip
@@ -68,14 +70,16 @@ def stuck_fit(begin: Begun, held: np.ndarray) -> LoopFit:
     values[[STIFFNESS, OFFSET, test.named]] = reach / span, float(test.force[0]), 0.0
     task = problem(test, layout, free)
     task.free[test.named] = False  # a spring that is carried from the beginning is an offset
-    return settled(test, layout, free, minimise(task, values, _EVALUATIONS), held_state=True)
+    return settled(test, layout, free, descend(task, values, _EVALUATIONS), held_state=True)
 
 
-def is_rigid(fit: LoopFit, slips: np.ndarray, branch: np.ndarray) -> bool:
+def is_rigid(fit: LoopFit) -> bool:
     """Whether the elastic travel is hidden by the noise, or passed between two samples."""
     friction, stiffness = fit.solution.values[[FRICTION, STIFFNESS]]
     travel = 2.0 * friction / stiffness
     noise = fit.test.sigma_moved if fit.test.order == 0 else 0.0
+    slips = modelled_force(fit.test, fit.layout, fit.solution.values).slips
+    branch = motion(fit.layout, fit.solution.values[places_of(fit.test).displacement :], fit.test.time).branch
     before = np.bincount(branch[~slips], minlength=fit.layout.branches)
     return bool(travel <= _SEEN * noise or np.median(before) < _SAMPLES)
 
@@ -100,4 +104,4 @@ def _at(fit: LoopFit, stiffness: float) -> Solution:
     # the spring carries the same force at the beginning
     values[places_of(fit.test).state] *= values[STIFFNESS] / stiffness
     values[STIFFNESS] = stiffness
-    return minimise(fit.problem._replace(free=free), values, _EVALUATIONS)
+    return descend(fit.problem._replace(free=free), values, _EVALUATIONS)

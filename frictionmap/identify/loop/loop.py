@@ -1,7 +1,6 @@
 """Friction, stiffnesses and damping of a damper from its force over a given displacement or velocity."""
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -10,29 +9,14 @@ from ... import checks
 from ...errors import InputError
 from ..parameters import checked_free
 from ..signals.samples import finite_numbers, within
-from ..statistics.cautions import autocorrelation_warnings, correlation_warnings
-from ..statistics.estimates import estimates, number, verdict, with_error
-from ..statistics.least_squares import Errors, Problem, Solution, errors, undetermined
-from ..statistics.levels import FOUND
-from ..statistics.weights import estimated_weights
-from .branches import motion
-from .fit import Begun, LoopFit, begun, fit_loop, settled
-from .held import is_rigid, least_stiffness, nothing_slips, stuck_fit
-from .problem import (
-    ASYMMETRY,
-    BACKLASH,
-    FRICTION,
-    MU,
-    NAMES,
-    OFFSET,
-    SPRING,
-    STIFFNESS,
-    DamperTest,
-    modelled_force,
-    places_of,
-)  # fmt: skip
+from ..statistics.estimates import estimates, number, verdict
+from ..statistics.least_squares import Solution
+from .fit import LoopFit, begun
+from .held import nothing_slips
+from .outcome import Outcome, slipping, without_slip
+from .problem import NAMES, DamperTest, modelled_force
 from .shape import displacement_of, reversals
-from .static_friction import Static, static_friction
+from .verdict import VERDICTS
 
 #: Most factors of a speed law.
 FACTORS = tuple(f"factor_{k}" for k in range(1, 9))
@@ -66,31 +50,8 @@ MEANINGS = {
     for k, name in enumerate(FACTORS, 1)
 }
 
-_VERDICTS = {
-    "friction": "friction in a contact with a spring",
-    "no_slip": "nothing slips: only the sum of the stiffnesses and a lower bound of the friction are known",
-    "rigid": "the contact slips at once: of its stiffness only a lower bound is known",
-    "backlash": "friction in a contact with play",
-    "speed_dependent": "friction that depends on the speed",
-    "peak": "static friction exceeds kinetic friction",
-}
-
-#: Singular values of scaled slopes below this share of the largest: not identifiable.
-_CONDITION = 1e-6
-
-#: Samples of a branch, below which a warning is due; shares of the motion that are polarity, not noise.
-_FEW, _AGAINST = 20, 0.02
-
-
-class _Result(NamedTuple):
-    """A fit, what is hidden of it, and the intervals that slopes do not give."""
-
-    fit: LoopFit
-    errors: Errors
-    code: str
-    more: dict[str, xr.Variable]
-    warnings: list[str]
-    values: np.ndarray  # NaN of what the test does not determine
+#: Share of the motion that is polarity, not noise.
+_AGAINST = 0.02
 
 
 def loop(
@@ -148,7 +109,7 @@ def loop(
     held, named = _held(known or {}, free, test)
     _check_motion(test)
     begin = begun(test, held)
-    result = _no_slip(begin, held) if nothing_slips(begin, held) else _slipping(begin, held)
+    result = without_slip(begin, held) if nothing_slips(begin, held) else slipping(begin, held, named)
     return _dataset(result, held, named)
 
 
@@ -226,139 +187,12 @@ def _check_motion(test: DamperTest) -> None:
         )
 
 
-def _no_slip(begin: Begun, held: np.ndarray) -> _Result:
-    """Only the sum of the stiffnesses, and the least friction."""
-    fit = stuck_fit(begin, held)
-    found = _errors(fit)
-    values = fit.solution.values[: fit.test.named].copy()
-    total, error = float(values[STIFFNESS]), float(found.standard_error[STIFFNESS])
-    model = fit.test.force + _force_residual(fit)
-    half = 0.5 * float(np.ptp(model))
-    alone = held[SPRING] == 0.0
-    lower, upper = found.lower.copy(), found.upper.copy()
-    unknown = [k for k in (FRICTION, STIFFNESS, SPRING, BACKLASH, MU, ASYMMETRY, OFFSET) if np.isnan(held[k])]
-    unknown += [k for k in range(len(NAMES), fit.test.named) if np.isnan(held[k])]
-    lower[unknown], upper[unknown] = 0.0, np.inf
-    signed = [k for k in unknown if k in (ASYMMETRY, OFFSET)]
-    lower[signed] = -np.inf
-    if alone and np.isnan(held[FRICTION]):
-        lower[FRICTION] = half
-    values[unknown] = np.nan
-    errors_of = found.standard_error.copy()
-    errors_of[unknown] = np.nan
-    bounded = found._replace(standard_error=errors_of, lower=lower, upper=upper)
-    words = "the contact never slips" + ("" if alone else "; beside a spring of unknown stiffness")
-    more = with_error("stiffness_sum", total, error, "contact_stiffness + parallel_stiffness", "N/mm")
-    more["friction_lower"] = number(
-        half, "half the range of the force: friction is at least this if parallel_stiffness is 0", "N"
-    )
-    return _Result(fit, bounded, "no_slip", more, [
-        f"{words}: friction cannot be determined; contact_stiffness + parallel_stiffness is {total:.5g} "
-        f"+- {error:.2g} N/mm; increase the amplitude"
-    ], values)  # fmt: skip
-
-
-def _slipping(begin: Begun, held: np.ndarray) -> _Result:
-    fit, static = fit_loop(begin, held), None
-    if np.isnan(held[MU]):
-        static = static_friction(fit)
-        fit = static.fit
-    else:
-        fit = settled(fit.test, fit.layout, fit.problem.free[: fit.test.named], fit.solution)
-    forces = modelled_force(fit.test, fit.layout, fit.solution.values)
-    first = places_of(fit.test).displacement
-    branch = motion(fit.layout, fit.solution.values[first:], fit.test.time).branch
-    rigid = bool(np.isnan(held[STIFFNESS])) and is_rigid(fit, forces.slips, branch)
-    least = least_stiffness(fit) if rigid else None
-    if rigid:
-        fit = fit._replace(problem=_without(fit, STIFFNESS))
-    _check_identifiable(fit)
-    found = _errors(fit)
-    values = fit.solution.values[: fit.test.named].copy()
-    if least is not None:
-        values, found = _bounded(values, found, STIFFNESS, least, np.inf)
-    words = _cautions(fit, found, branch)
-    if least is not None:
-        words.append(
-            f"the data do not determine contact_stiffness: any value above {least:.3g} N/mm explains them"
-        )
-    if static is not None:
-        values[MU] = 0.5 * (static.lower + static.upper)
-        values, found = _bounded(values, found, MU, static.lower, static.upper, values[MU])
-    return _Result(fit, found, _code(values, found, rigid, static, held), {}, words, values)
-
-
-def _without(fit: LoopFit, index: int) -> Problem:
-    free = fit.problem.free.copy()
-    free[index] = False
-    return fit.problem._replace(free=free)
-
-
-def _bounded(
-    values: np.ndarray, found: Errors, index: int, lower: float, upper: float, value: float = np.nan
-) -> tuple[np.ndarray, Errors]:
-    """Estimates with an interval, and no standard error, of one of them."""
-    parts = [part.copy() for part in (values, found.standard_error, found.lower, found.upper)]
-    for part, one in zip(parts, (value, np.nan, lower, upper), strict=True):
-        part[index] = one
-    return parts[0], found._replace(standard_error=parts[1], lower=parts[2], upper=parts[3])
-
-
-def _check_identifiable(fit: LoopFit) -> None:
-    """Refuse parameters that the samples do not determine separately."""
-    together, deficient = undetermined(fit.problem, fit.solution, _CONDITION)
-    names = [fit.test.names[k] for k in together if k < fit.test.named]
-    if deficient and names:
-        raise InputError(
-            f"cannot determine {' and '.join(names)} from this test: the force depends on them alike; "
-            "hold one of them under known"
-        )
-
-
-def _errors(fit: LoopFit) -> Errors:
-    """Errors of the named parameters; the noise of both channels is estimated."""
-    kind = np.repeat((0, 1), fit.test.time.size)
-    scaling = estimated_weights(fit.problem, fit.solution, kind, np.ones(2, dtype=bool))
-    found = errors(fit.problem, fit.solution, 1.0, scaling=scaling)
-    named = slice(fit.test.named)
-    return found._replace(
-        standard_error=found.standard_error[named], lower=found.lower[named], upper=found.upper[named],
-        freedom=found.freedom[named], correlation=found.correlation[named, named],
-    )  # fmt: skip
-
-
 def _force_residual(fit: LoopFit) -> np.ndarray:
     """Fitted less measured [N]."""
     return fit.solution.residual[fit.test.time.size :] * fit.test.sigma_force
 
 
-def _code(values: np.ndarray, found: Errors, rigid: bool, static: Static | None, held: np.ndarray) -> str:
-    """What was found: by estimates beyond three standard errors."""
-    if rigid:
-        return "rigid"
-    if static is not None and static.lower > 1.0:
-        return "peak"
-    error = found.standard_error
-    if np.isnan(held[BACKLASH]) and values[BACKLASH] > FOUND * error[BACKLASH]:
-        return "backlash"
-    law = np.flatnonzero(np.isnan(held[len(NAMES) :])) + len(NAMES)
-    if (np.abs(values[law] - 1.0) > FOUND * error[law]).any():
-        return "speed_dependent"
-    return "friction"
-
-
-def _cautions(fit: LoopFit, found: Errors, branch: np.ndarray) -> list[str]:
-    """Warnings about a fit."""
-    words = autocorrelation_warnings(found)
-    shown = np.flatnonzero(fit.problem.free[: fit.test.named])
-    words += correlation_warnings([fit.test.names[k] for k in shown], found.correlation[np.ix_(shown, shown)])
-    few = float(np.median(np.bincount(branch, minlength=fit.layout.branches)))
-    if few < _FEW:
-        words.append(f"{few:g} samples between two turning points: at least {_FEW} are needed")
-    return words
-
-
-def _dataset(result: _Result, held: np.ndarray, named: list[str]) -> xr.Dataset:
+def _dataset(result: Outcome, held: np.ndarray, named: list[str]) -> xr.Dataset:
     """The dataset of a fit, of the parameters that were named."""
     fit, test = result.fit, result.fit.test
     k = np.array([test.names.index(name) for name in named])
@@ -377,7 +211,7 @@ def _dataset(result: _Result, held: np.ndarray, named: list[str]) -> xr.Dataset:
     return _described(ds, result)
 
 
-def _described(ds: xr.Dataset, result: _Result) -> xr.Dataset:
+def _described(ds: xr.Dataset, result: Outcome) -> xr.Dataset:
     fit, test = result.fit, result.fit.test
     forces = modelled_force(test, fit.layout, fit.solution.values)
     unit = "mm/s" if test.order else "mm"
@@ -390,7 +224,7 @@ def _described(ds: xr.Dataset, result: _Result) -> xr.Dataset:
     ds["sigma_motion"] = number(test.sigma_moved, f"standard deviation of the noise of the {kind}", unit)
     ds["slip_share"] = number(float(np.mean(forces.slips)), "share of the samples in which the contact slips")
     ds["branches"] = number(float(fit.layout.branches), "branches of the motion between turning points")
-    ds["verdict"] = verdict(list(_VERDICTS).index(result.code), _VERDICTS)
+    ds["verdict"] = verdict(list(VERDICTS).index(result.code), VERDICTS)
     ds = ds.assign(result.more)
     ds.attrs["title"] = "Damper test"
     ds.attrs["warnings"] = "; ".join(result.warnings)

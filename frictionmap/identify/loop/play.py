@@ -60,10 +60,15 @@ def factor(element: Element, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray,
     return by_knot @ element.factors, slope, by_knot
 
 
-def forces(element: Element, places: Places, layout: Layout, values: np.ndarray, at: Motion) -> Forces:
+def forces(
+    element: Element, places: Places, layout: Layout, values: np.ndarray, at: Motion,
+    measured: np.ndarray | None = None, hold: bool = False,
+) -> Forces:  # fmt: skip
     """The force of the element at the samples of a motion.
 
     values : all unknowns
+    measured : forces (samples,) by which the first sample that slips is found, instead of by the law
+    hold : the force of the spring up to the end of each branch, as if it slipped after that only
     """
     of_u = slice(places.displacement, values.size)
     ends = values[of_u][: layout.branches + 1]
@@ -82,8 +87,12 @@ def forces(element: Element, places: Places, layout: Layout, values: np.ndarray,
         slipping, broke[j] = _slips(
             element, sense, w, np.abs(at.derivatives[1, here]), carried + ends[j + 1] - ends[j]
         )
-        slips[here] = slipping
         force[here], slopes[here] = _held(element, places, w, own)
+        if measured is not None and broke[j]:
+            g = factor(element, np.abs(at.derivatives[1, here]))[0]
+            slipping = _seen(measured[here], force[here], sense * _strength(element, sense) * g)
+        slipping = slipping & (not hold)
+        slips[here] = slipping
         late = here[slipping]
         if late.size:
             force[late], slopes[late] = _slipping(
@@ -107,6 +116,13 @@ def _slips(
     slipping = np.logical_or.accumulate(sense * w >= limit)
     at_end = sense * last >= max(element.mu, 1.0) * reach + 0.5 * element.backlash
     return slipping, bool(at_end or slipping.any())
+
+
+def _seen(measured: np.ndarray, held: np.ndarray, slipping: np.ndarray) -> np.ndarray:
+    """Which samples of a branch slip, so that the sum of squares is the least; bool (samples,)."""
+    gain = (measured - held) ** 2 - (measured - slipping) ** 2
+    from_here = np.append(np.cumsum(gain[::-1])[::-1], 0.0)
+    return np.arange(measured.size) >= np.argmax(from_here)
 
 
 def _held(element: Element, places: Places, w: np.ndarray, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -15,8 +15,8 @@ NAMES = (
     "delay", "offset", "drift",
 )  # fmt: skip
 
-#: kg mm/s^2 are millinewtons.
-_KG_MM = 1e-3
+#: Of u, u' and u'': kg mm/s^2 are millinewtons.
+_SCALES = (1.0, 1.0, 1e-3)
 
 
 class DamperTest(NamedTuple):
@@ -29,6 +29,9 @@ class DamperTest(NamedTuple):
     speeds: np.ndarray  # mm/s, knots of the speed law, beginning with 0
     sigma_moved: float = 1.0
     sigma_force: float = 1.0
+    break_seen: bool = (
+        False  # whether the contact slips from where the force shows it, not from where (L1) says
+    )
 
     @property
     def named(self) -> int:
@@ -68,21 +71,27 @@ def modelled_force(test: DamperTest, layout: Layout, values: np.ndarray) -> Forc
     """The force at the times of the samples, and its derivatives by all unknowns (L1)."""
     places = places_of(test)
     at = motion(layout, values[places.displacement :], test.time - values[DELAY])
-    found = forces(element_of(test, values), places, layout, values, at)
-    force, slopes = found.force.copy(), found.slopes
-    scales = (1.0, 1.0, _KG_MM)
+    beside = beside_contact(test, values, at)
+    measured = test.force - beside if test.break_seen else None
+    found = forces(element_of(test, values), places, layout, values, at, measured)
+    force, slopes = found.force + beside, found.slopes
     by_delay = np.zeros(force.size)
     for n, place in enumerate((SPRING, SLOPE, MASS)):
-        force += values[place] * scales[n] * at.derivatives[n]
-        slopes[:, place] += scales[n] * at.derivatives[n]
-        slopes[:, places.displacement :] += values[place] * scales[n] * at.slopes[n]
-        by_delay -= values[place] * scales[n] * at.derivatives[n + 1]
-    later = test.time - values[DELAY]
-    force += values[OFFSET] + values[DRIFT] * later
+        slopes[:, place] += _SCALES[n] * at.derivatives[n]
+        slopes[:, places.displacement :] += values[place] * _SCALES[n] * at.slopes[n]
+        by_delay -= values[place] * _SCALES[n] * at.derivatives[n + 1]
     slopes[:, OFFSET] += 1.0
-    slopes[:, DRIFT] += later
+    slopes[:, DRIFT] += test.time - values[DELAY]
     slopes[:, DELAY] += by_delay - values[DRIFT] + _contact_by_delay(test, values, found, at)
     return found._replace(force=force, slopes=slopes)
+
+
+def beside_contact(test: DamperTest, values: np.ndarray, at: Motion) -> np.ndarray:
+    """The force that does not go through the contact."""
+    force = values[OFFSET] + values[DRIFT] * (test.time - values[DELAY])
+    for n, place in enumerate((SPRING, SLOPE, MASS)):
+        force += values[place] * _SCALES[n] * at.derivatives[n]
+    return force
 
 
 def _contact_by_delay(test: DamperTest, values: np.ndarray, found: Forces, at: Motion) -> np.ndarray:

@@ -3,15 +3,19 @@
 import numpy as np
 
 from ..signals.turning_points import noise_level, turns
-from ..statistics.least_squares import Problem, Solution, minimise
+from ..statistics.least_squares import Problem, Solution
 from .branches import Layout, motion
+from .descent import descend
 
 #: Turning points are where the motion turns back by this many standard deviations of its noise, and by this
 #: share of its range.
-_NOISES, _SHARE = 12.0, 0.02
+_NOISES, _SHARE = 12.0, 0.002
+
+#: The same for the fitted motion, which the noise moves by a part of its standard deviation.
+_FITTED_NOISES = 3.0
 
 #: Terms of a branch that are tried.  Four at least: the force sees less than the noise of the displacement.
-_TERMS = (4, 6, 8, 10)
+_TERMS = (4, 6, 8, 10, 14, 20)
 
 #: Evaluations, of a fit that is only a start.
 _STEPS = 30
@@ -31,7 +35,11 @@ def displacement_of(time: np.ndarray, moved: np.ndarray, order: int) -> np.ndarr
 def reversals(time: np.ndarray, moved: np.ndarray, order: int) -> np.ndarray:
     """Samples at which the displacement turns back."""
     u = displacement_of(time, moved, order)
-    swing = max(_NOISES * noise_level(u), _SHARE * float(np.ptp(u)))
+    return _turned(u, max(_NOISES * noise_level(u), _SHARE * float(np.ptp(u))))
+
+
+def _turned(u: np.ndarray, swing: float) -> np.ndarray:
+    """Samples at which a displacement turns back by more than `swing`."""
     found = np.array(turns(u, swing), dtype=int)
     # the first one is where the record begins unless the motion came from farther than that
     return found[1:] if found.size and np.ptp(u[: found[0] + 1]) <= swing else found
@@ -40,6 +48,17 @@ def reversals(time: np.ndarray, moved: np.ndarray, order: int) -> np.ndarray:
 def shape_fit(time: np.ndarray, moved: np.ndarray, order: int) -> tuple[Layout, Solution]:
     """Branches, straight or as smooth as the information of the samples (BIC) asks for."""
     turned = reversals(time, moved, order)
+    layout, solution = _smooth(time, moved, order, turned)
+    if order == 0:
+        noise = float(np.sqrt(solution.sum / (time.size - layout.size)))
+        more = _turned(motion(layout, solution.values, time).derivatives[0], _FITTED_NOISES * noise)
+        if more.size > turned.size:
+            return _smooth(time, moved, order, more)
+    return layout, solution
+
+
+def _smooth(time: np.ndarray, moved: np.ndarray, order: int, turned: np.ndarray) -> tuple[Layout, Solution]:
+    """Branches between given turning points."""
     found = []
     for terms in (-1, *_TERMS):
         layout = _layout(time, turned, terms)
@@ -70,4 +89,4 @@ def _fit(layout: Layout, time: np.ndarray, moved: np.ndarray, order: int, turned
     start = np.zeros(layout.size)
     start[: layout.branches + 1] = u[np.concatenate(([0], turned, [time.size - 1]))]
     start[layout.times] = time[turned]
-    return minimise(Problem(residuals, free, -unbounded, -unbounded, unbounded), start, _STEPS)
+    return descend(Problem(residuals, free, -unbounded, -unbounded, unbounded), start, _STEPS)

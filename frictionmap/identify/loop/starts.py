@@ -4,8 +4,9 @@ from itertools import product
 
 import numpy as np
 
-from ..statistics.least_squares import Solution, minimise
+from ..statistics.least_squares import Solution
 from .branches import Layout, motion
+from .descent import descend
 from .problem import (
     BACKLASH,
     FRICTION,
@@ -47,14 +48,14 @@ def starts(test: DamperTest, layout: Layout, shape: np.ndarray, held: np.ndarray
         [begin[FRICTION] / reach * one for one in _STIFFNESSES] if free[STIFFNESS] else [held[STIFFNESS]]
     )
     plays = [one * reach for one in _PLAYS] if free[BACKLASH] else [held[BACKLASH]]
-    statics = [_peak(test, layout, begin)] if free[MU] else [held[MU]]
+    ratios = [_peak(test, layout, begin)] if free[MU] else [held[MU]]
     task = problem(test, layout, free & (np.arange(free.size) != MU), fixed_motion=True)
     found = []
-    for stiffness, play, static in product(stiffnesses, plays, statics):
+    for stiffness, play, static in product(stiffnesses, plays, ratios):
         values = begin.copy()
         values[[STIFFNESS, BACKLASH, MU]] = stiffness, play, static
         values[test.named] = _state(test, layout, values)
-        found.append(minimise(task, values, _STEPS))
+        found.append(descend(task, values, _STEPS))
     return sorted(found, key=lambda one: one.sum)
 
 

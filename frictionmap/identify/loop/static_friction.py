@@ -1,28 +1,23 @@
-"""Static over kinetic friction: an interval, from the profile of the sum of squares.
+"""Static over kinetic friction: an interval, from the samples between which the contact breaks away.
 
-The force drops by (mu - 1) F between two samples.  Which two changes by steps as mu grows, so that the sum
-has no derivative by mu: it is the least for all mu of an interval.
+The force drops by (mu - 1) F between two samples of a branch, the last that is held and the first that
+slips.  mu is between the forces, over F, that the spring of the contact has at these two.  The sum of squares
+does not change with mu between them, and has no derivative by it.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ..statistics.least_squares import Solution, minimise
+from ..statistics.least_squares import unscaled_covariance
 from .branches import motion
-from .fit import LoopFit, settled
-from .problem import FRICTION, MU, STIFFNESS, places_of
+from .fit import LoopFit
+from .play import factor, forces
+from .problem import DELAY, FRICTION, beside_contact, element_of, places_of
 
-#: Growth of the sum, over the variance of a sample, that one more unknown makes up for in 95 of 100 cases.
-_CHANCE = 3.84
-
-#: Values of mu that are tried to either side, over the change of the spring's force between two samples.
-_REACH, _VALUES = 0.6, 12
-
-#: The ends are found to this share of the distance of the values tried.
-_HALVINGS = 5
-
-_STEPS = 30
+#: Growth of the sum, over the variance of a sample, within which a break-away may be elsewhere, and the same
+#: in standard errors: chance makes more in 5 of 100 cases.
+_CHANCE, _REACH = 3.84, 1.96
 
 
 class Static(NamedTuple):
@@ -30,57 +25,56 @@ class Static(NamedTuple):
 
     lower: float
     upper: float
-    fit: LoopFit  # in the middle
+    constant: bool  # whether one value explains all break-aways; else the interval holds those of each
+
+
+class _Branch(NamedTuple):
+    """Spring's force of one branch, over F, before and after it breaks away."""
+
+    last_held: float
+    first_slipping: float
 
 
 def static_friction(fit: LoopFit) -> Static:
-    """The interval of mu around the best value, and the fit there."""
-    fit = _searched(_searched(fit))
-    fit = settled(fit.test, fit.layout, fit.problem.free[: fit.test.named], fit.solution)
-    step = _step(fit)
-    grid = _grid(fit, step)
-    tried = [(mu, _at(fit, mu)) for mu in grid]
-    least = min(one.sum for _, one in tried)
-    inside = [k for k, (_, one) in enumerate(tried) if one.sum <= least + _CHANCE]
-    first, last = inside[0], inside[-1]
-    lower = _end(fit, grid[first], grid[first - 1] if first else 1.0, least)
-    upper = _end(fit, grid[last], grid[min(last + 1, grid.size - 1)], least)
-    middle = _at(fit, 0.5 * (lower + upper))
-    best = middle if middle.sum <= least + _CHANCE else tried[inside[len(inside) // 2]][1]
-    return Static(lower, upper, fit._replace(solution=best))
+    """The interval of mu that all break-aways leave."""
+    found = _branches(fit)
+    lower = max((one.last_held for one in found), default=1.0)
+    upper = min((one.first_slipping for one in found), default=np.inf)
+    if lower <= upper:
+        return Static(max(lower, 1.0), max(upper, 1.0), True)
+    return Static(max(upper, 1.0), max(lower, 1.0), False)
 
 
-def _searched(fit: LoopFit) -> LoopFit:
-    step = _step(fit)
-    tried = [_at(fit, mu) for mu in _grid(fit, step)]
-    return fit._replace(solution=min(tried, key=lambda one: one.sum))
+def _branches(fit: LoopFit) -> list[_Branch]:
+    """The limits of mu in every branch that slips, with the errors of the fit."""
+    test, values = fit.test, fit.solution.values
+    places, element = places_of(test), element_of(test, values)
+    at = motion(fit.layout, values[places.displacement :], test.time - values[DELAY])
+    held = forces(element, places, fit.layout, values, at, hold=True)
+    measured = test.force - beside_contact(test, values, at)
+    senses = np.sign(np.diff(values[places.displacement :][: fit.layout.branches + 1]))
+    covariance = unscaled_covariance(fit.problem, fit.solution)
+    g = factor(element, np.abs(at.derivatives[1]))[0]
+    result = []
+    for j in np.flatnonzero(held.broke):
+        here, sense = np.flatnonzero(at.branch == j), senses[j]
+        strength = element.friction * (1.0 + sense * element.asymmetry)
+        gain = (measured[here] - held.force[here]) ** 2 - (measured[here] - sense * strength * g[here]) ** 2
+        gain = np.append(np.cumsum(gain[::-1])[::-1], 0.0) / test.sigma_force**2
+        possible = np.flatnonzero(gain >= gain.max() - _CHANCE)
+        first, last = int(possible[0]), int(possible[-1])
 
+        def limit(k: int, way: float, sense: float = sense, strength: float = strength) -> float:
+            """The spring's force at a sample over the friction, and beyond it what its error allows."""
+            share = sense * held.force[k] / strength
+            slopes = sense * held.slopes[k] / strength
+            slopes[FRICTION] -= share / element.friction
+            return float(share + way * _REACH * np.sqrt(max(slopes @ covariance @ slopes, 0.0)))
 
-def _step(fit: LoopFit) -> float:
-    """Change of the spring's force over F between two samples, as the contact breaks away."""
-    values = fit.solution.values
-    at = motion(fit.layout, values[places_of(fit.test).displacement :], fit.test.time)
-    travel = float(np.median(np.abs(np.diff(at.derivatives[0]))))
-    return travel * values[STIFFNESS] / values[FRICTION]
-
-
-def _grid(fit: LoopFit, step: float) -> np.ndarray:
-    mu = fit.solution.values[MU]
-    return np.unique(np.maximum(mu + np.linspace(-_REACH, _REACH, 2 * _VALUES + 1) * step, 1.0))
-
-
-def _at(fit: LoopFit, mu: float) -> Solution:
-    values = fit.solution.values.copy()
-    values[MU] = mu
-    return minimise(fit.problem, values, _STEPS)
-
-
-def _end(fit: LoopFit, inside: float, outside: float, least: float) -> float:
-    """The value beyond which the sum is larger than chance makes it, on the outer side."""
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (inside + outside)
-        if _at(fit, middle).sum <= least + _CHANCE:
-            inside = middle
-        else:
-            outside = middle
-    return outside
+        result.append(
+            _Branch(
+                limit(here[first - 1], -1.0) if first else -np.inf,
+                limit(here[last], 1.0) if last < here.size else np.inf,
+            )
+        )
+    return result

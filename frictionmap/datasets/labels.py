@@ -341,6 +341,10 @@ GENERAL_VARIABLES = {
     "peak_to_peak": _range_label("range of the displacement of each mass, over P/k1 (Y)", "dof", least=0.0),
     "midpoint": _range_label("middle of the range of the displacement of each mass, over P/k1 (Y)", "dof"),
     "work_wall": _range_label("work of the moving wall", comment=_PER_CYCLE),
+    "mean_velocity": _range_label(
+        "mean velocity in the contact, of a structure that no spring holds at a place",
+        comment="dz/dtau over P/k1 (Y): at one that is not 0 the structure drifts, and amplitudes are NaN",
+    ),
     "release_order": Label(
         np.int8,
         "whether the pattern after some event of the steady state depends on the order in which contacts "

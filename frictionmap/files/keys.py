@@ -41,6 +41,10 @@ AXES: dict[str, dict[str, float]] = {
 _TEXT: Schema = {"type": "string"}
 _NAME: Schema = {"type": "string", "minLength": 1}
 _RATIOS = several(number(above=0.0), prefixItems=[{"type": "number", "const": 1}])
+_SPRINGS = either(
+    _RATIOS,
+    several(number(above=0.0), prefixItems=[{"type": "number", "const": 0}, {"type": "number", "const": 1}]),
+)
 _ZETA = number(least=0.0, most=checks.LARGEST_DAMPING)
 _MATRIX = several(several(number()))
 _MATRICES = either(
@@ -230,9 +234,10 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
         _system_key(
             "stiffness_ratios",
-            "kappa_i = k_i/k_1 of a chain; the first is 1; spring 1 connects mass 1 to the ground",
-            _RATIOS,
-            words="numbers > 0",
+            "kappa_i = k_i/k_1 of a chain; the first is 1; spring 1 connects mass 1 to the ground; 0: there "
+            "is none, and the second is 1",
+            _SPRINGS,
+            words="numbers > 0; the first may be 0",
         ),
         _chain("masses", "masses of a chain; the first one goes to [units]"),
         _chain("springs", "springs of a chain; the first one connects mass 1 to the ground"),

@@ -55,7 +55,24 @@ def rest_states(system: System, modal: ModalSystem, r: np.ndarray) -> np.ndarray
             x += u * group.vector / (group.vector @ group.vector)
     state = np.zeros((r.size, 2, phi.shape[1]))
     state[:, 0] = phi.T @ mass @ x
+    alone = moving_alone(system, modal)
+    state[:, 1, alone] = load_velocities(system, modal, r, np.zeros(r.size))[:, alone]
     return state
+
+
+def moving_alone(system: System, modal: ModalSystem) -> np.ndarray:
+    """Rigid-body modes that only the load moves, (m,) bool: they keep any velocity that they begin with."""
+    untouched = ~modal.chi.any(axis=0) & ~modal.damping.any(axis=0)
+    return (np.arange(modal.squares.size) < system.rigid_modes) & untouched
+
+
+def load_velocities(system: System, modal: ModalSystem, r: np.ndarray, tau: np.ndarray) -> np.ndarray:
+    """Velocities q' at phases tau (n_r,) of modes on which only the load acts, with the mean 0; (n_r, m)."""
+    found = np.zeros((r.size, modal.squares.size))
+    for order, load in general_of(system).forces.items():
+        place = -(modal.phi.T @ load) / np.where(r > 0.0, order * r, 1.0)[:, np.newaxis] ** 2
+        found += (1j * order * place * np.exp(1j * order * tau)[:, np.newaxis]).real
+    return found
 
 
 def sliding_states(problem: Problem, r: np.ndarray, size: float) -> np.ndarray:

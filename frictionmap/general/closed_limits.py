@@ -22,7 +22,7 @@ class ClosedLimits(NamedTuple):
 def has_closed_limits(system: System) -> bool:
     """Whether a system is one rigid contact under one harmonic load, with friction in proportion to beta."""
     general = general_of(system)
-    if general.count > 1 or general.elastic.any() or len(general.orders) > 1:
+    if general.free or general.count > 1 or general.elastic.any() or len(general.orders) > 1:
         return False
     contact = general.groups[0]
     return not contact.first.wall_velocity and not contact.first.nu and contact.friction(0.0, 1.0)[0] == 0.0

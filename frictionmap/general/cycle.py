@@ -38,6 +38,9 @@ def harmonic_values(system: System, steps: Steps, highest: int) -> dict[str, np.
     z, f = steps.harmonics("z", highest), steps.harmonics("f", highest)
     z[:, 0] += offset_z
     phasors = {"displacement_harmonic": x, "contact_harmonic": z, "friction_harmonic": f}
+    if steps.period and steps.drifts:  # forces repeat, and displacements do not
+        unknown = {name: np.full_like(values, _UNKNOWN) for name, values in phasors.items()}
+        return unknown | {"friction_harmonic": f}
     if steps.period:
         return phasors
     return {name: np.full_like(values, _UNKNOWN) for name, values in phasors.items()}
@@ -67,7 +70,7 @@ def _base_velocity(system: System, steps: Steps, x: np.ndarray) -> np.ndarray:
 
 
 def work_values(system: System, steps: Steps) -> dict[str, np.ndarray]:
-    """Works per cycle; with base excitation the input follows from the balance.
+    """Works per cycle; with base excitation, and of a drifting motion, the input follows from the balance.
 
     Of a motion that does not repeat only the work of friction is known, an average.
     """
@@ -79,7 +82,7 @@ def work_values(system: System, steps: Steps) -> dict[str, np.ndarray]:
         unknown = np.array(np.nan)
         return {"work_input": unknown, "work_damping": unknown, "work_friction": friction}
     damping = _damping_work(system, steps)
-    if general.base:
+    if general.base or steps.drifts:
         given = friction.sum() + damping - wall.sum()
     else:
         highest = max(general.forces)
@@ -100,7 +103,7 @@ def first_harmonics(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 def phase_values(steps: Steps) -> dict[str, np.ndarray]:
     """Lags of the maxima of the displacements; NaN where the period is not 1 or the masses rest there."""
     count = steps.modal.phi.shape[0]
-    if steps.period != 1:
+    if steps.period != 1 or steps.drifts:
         return {"phase_lag": np.full(count, np.nan)}
     tau = np.linspace(0.0, 2.0 * np.pi, _SAMPLES * max(64, steps.begins.size) + 1)[:-1]
     x = steps.modal.phi @ steps.at("q", tau)

@@ -12,9 +12,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ..errors import InputError
 from ..model.general import ContactSystem
 from ..model.system import System
-from .problem import general_of, refuse_loop, springs
+from .problem import general_of, is_symmetric, refuse_loop, springs
 
 #: Samples per period of the highest harmonic where extremes are looked for, and steps that refine them.
 _SAMPLES = 16
@@ -26,6 +27,9 @@ _MOST_STEPS = 60
 #: Rounding error of the linear equations, some hundred times 2^-53: a pivot below this share of the stiffness
 #: is a resonance of the held structure, and a force below this share of the largest one is zero.
 _ROUNDING = 1e-14
+
+#: Parts of unit vectors that are zero, to rounding.
+_SPAN = 1e-10
 
 #: Friction above this, over the unit of the load, is infinite: the normal load of the contact vanishes at an
 #: instant at which the contact is loaded, or is rounding error there.
@@ -183,19 +187,29 @@ def largest(orders: np.ndarray, phasors: np.ndarray) -> np.ndarray:
     return found.max(axis=-1)
 
 
-def half_range(forces: Mapping[int, np.ndarray]) -> np.ndarray:
-    """Half the range of the forces, (n_r, N)."""
+def _extremes(forces: Mapping[int, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Largest forces of both signs, (n_r, N)."""
     orders = np.array(list(forces), dtype=float)
     phasors = np.stack(list(forces.values()), axis=-1)
     infinite = ~np.isfinite(phasors).all(axis=-1)
     phasors = np.where(infinite[..., np.newaxis], 0.0, phasors)
-    return np.where(infinite, np.inf, 0.5 * (largest(orders, phasors) + largest(orders, -phasors)))
+    high, low = largest(orders, phasors), largest(orders, -phasors)
+    return np.where(infinite, np.inf, high), np.where(infinite, np.inf, low)
 
 
-def _least_friction(forces: Mapping[int, np.ndarray], normal: Mapping[int, complex], j: int) -> np.ndarray:
+def half_range(forces: Mapping[int, np.ndarray]) -> np.ndarray:
+    """Half the range of the forces, (n_r, N)."""
+    high, low = _extremes(forces)
+    return 0.5 * (high + low)
+
+
+def _least_friction(
+    forces: Mapping[int, np.ndarray], normal: Mapping[int, complex], j: int, placed: bool
+) -> np.ndarray:
     """Least static friction f of contact j with max(F - f nu) <= min(F + f nu), (n_r,).
 
-    The sum max(F - f nu) + max(-F - f nu) falls with f: its zero is found by bisection.
+    The sum max(F - f nu) + max(-F - f nu) falls with f: its zero is found by bisection.  Where no other place
+    changes F by a constant (not `placed`), twice the larger of the two takes its place.
     """
     orders = sorted({*forces, *normal})
     n = np.array(orders, dtype=float)
@@ -208,7 +222,8 @@ def _least_friction(forces: Mapping[int, np.ndarray], normal: Mapping[int, compl
 
     def excess(f: np.ndarray) -> np.ndarray:
         part = f[:, np.newaxis] * nu
-        return largest(n, load - part) + largest(n, -load - part) - 2.0 * f
+        high, low = largest(n, load - part), largest(n, -load - part)
+        return (high + low if placed else 2.0 * np.maximum(high, low)) - 2.0 * f
 
     low = np.zeros(len(load))
     high = 0.5 * excess(low)
@@ -221,14 +236,42 @@ def _least_friction(forces: Mapping[int, np.ndarray], normal: Mapping[int, compl
     return np.where(infinite | (high > _ENDLESS), np.inf, high)
 
 
+def _placed(system: System) -> np.ndarray:
+    """Whether another place of each contact changes the force in it by a constant, (N,) bool.
+
+    Constant forces g in the contacts of a free structure must not push its rigid-body modes, A^T g = 0 with
+    the displacements A (N, k) in the contacts.  Where each g is either 0 or any, contacts are on their own.
+    """
+    general, k = general_of(system), system.rigid_modes
+    placed = np.ones(general.count, dtype=bool)
+    if not k:
+        return placed
+    left, sizes, _ = np.linalg.svd(general.vectors @ system.modes.phi[:, :k])
+    rank = int((sizes > _SPAN * max(float(sizes.max(initial=0.0)), 1e-300)).sum())
+    free = left[:, rank:]
+    own = (free**2).sum(axis=1)  # the diagonal of the projector on these g
+    placed = own > _SPAN
+    if not is_symmetric(general) and (placed & (own < 1.0 - _SPAN)).any():
+        names = ", ".join(general.groups[j].name for j in np.flatnonzero(placed & (own < 1.0 - _SPAN)))
+        raise InputError(
+            "cannot use",
+            "contacts",
+            f"{names} on a free structure under even harmonics, odd harmonics of normal loads or belts: "
+            f"constant forces in them depend on each other; leave these out, or add a spring to the ground",
+        )
+    return placed
+
+
 def least_static_friction(system: System, r: np.ndarray) -> np.ndarray:
     """Least static friction with which all contacts stick permanently, (n_r, N); inf beside a belt."""
     general = general_of(system)
     forces, _ = held_forces(system, r)
-    found = half_range(forces)
+    high, low = _extremes(forces)
+    found, placed = 0.5 * (high + low), _placed(system)
+    found[:, ~placed] = np.maximum(high, low)[:, ~placed]
     for j, group in enumerate(general.groups):
         if group.first.nu:
-            found[:, j] = _least_friction(forces, group.first.nu, j)
+            found[:, j] = _least_friction(forces, group.first.nu, j, bool(placed[j]))
         if group.first.wall_velocity:
             found[:, j] = np.inf
     zero = _ROUNDING * np.where(np.isfinite(found), found, 0.0).max(axis=1, initial=0.0)

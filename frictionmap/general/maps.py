@@ -68,7 +68,8 @@ def solve_cells(
     sticks_from = [np.searchsorted(beta[i], beta_stick[:, i]) for i in range(r.size)]
     stuck_from = np.where(unique[:, np.newaxis], np.stack(sticks_from, axis=1), many)
     starts = initial_states(system, problem, modal, solver.start)
-    grid = Grid(beta, kinetic, static, stuck_from, starts, places, float(solver.cycles), solver.tolerance)
+    settled = places and not general.free  # the place of a free structure is arbitrary
+    grid = Grid(beta, kinetic, static, stuck_from, starts, settled, float(solver.cycles), solver.tolerance)
     count = system.n if masses else 0
     found = allocate((mu.size, r.size, many), general.count, count)
     outputs = np.ascontiguousarray(modal.phi) if masses else np.empty((0, modal.phi.shape[1]))

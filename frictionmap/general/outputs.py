@@ -14,8 +14,12 @@ from .._kernels.general.fill import NUMBERS, Cells
 from .._kernels.general.laws.kinds import ELASTIC, RIGID
 from ..datasets.labels import LABELS, PER_CONTACT
 from ..model.general import ContactSystem
+from ..model.rigid_modes import is_carried
 from ..model.system import System
 from .problem import general_of
+
+#: Displacement over a period, over the range of the motion, that is no drift but the error of a steady state.
+DRIFTS = 1e-9
 
 #: Laws by number, and all of them.
 _ALL = (RIGID, ELASTIC)
@@ -39,6 +43,7 @@ class Output(NamedTuple):
     moving: bool = False  # whether only contacts that move have it
     placed: tuple[int, ...] = ()  # laws with which it depends on the places of contacts at rest
     wanted: Callable[[ContactSystem], bool] = lambda _: True  # systems that have it
+    free: bool = False  # whether only contacts that rigid-body modes move have it
 
 
 def _cell(name: str) -> Callable[[Solved], np.ndarray]:
@@ -114,6 +119,11 @@ TABLE = {
     "peak_to_peak": Output(lambda s: _range(s.masses)),
     "midpoint": Output(lambda s: _middle(s.masses), placed=_ALL),
     "work_wall": Output(_number("work_wall"), wanted=_belts),
+    "mean_velocity": Output(
+        lambda s: ways(s.cells) / (2.0 * np.pi),
+        wanted=lambda general: general.free,
+        free=True,
+    ),
     "release_order": Output(_cell("release_order"), wanted=_several),
 }
 
@@ -150,15 +160,53 @@ def output_values(name: str, system: System, cells: Cells) -> np.ndarray:
     laws, count = laws_of(general), general.count
     rests = cells.contact_regime == regimes.PERMANENT_STICKING
     low, high = cells.lowest, cells.highest
+    if system.rigid_modes:
+        low, high = about_middle(system, cells)
     values = output.values(
         Solved(
             cells, laws, rests, (low[..., :count], high[..., :count]), (low[..., count:], high[..., count:])
         )
     )
+    if output.free:
+        values = np.where(carried_contacts(system), values, np.nan)
+    if name in ("contact_midpoint", "midpoint") and system.rigid_modes:  # of motions at any place
+        values = np.full_like(values, np.nan)
     if name in PER_CONTACT and (output.laws != _ALL or output.moving):
         without = ~np.isin(laws, output.laws) | (rests & output.moving)
         values = np.where(without, np.nan, values)
     return values.astype(LABELS[name].dtype, copy=False)
+
+
+def carried_contacts(system: System) -> np.ndarray:
+    """Whether a rigid-body mode moves each contact, (N,) bool."""
+    return is_carried(system, system.modes)
+
+
+def ways(cells: Cells) -> np.ndarray:
+    """Displacements (..., N) in the contacts of a free structure over a period of the load."""
+    found = number("drift", cells)
+    ranges = (cells.highest - cells.lowest)[..., : found.shape[-1]]
+    with np.errstate(invalid="ignore"):  # an unresolved cell
+        none = (np.abs(found) <= DRIFTS * ranges) | (cells.contact_regime == regimes.PERMANENT_STICKING)
+    return np.where(none, 0.0, found)
+
+
+def drifts(system: System, cells: Cells) -> np.ndarray:
+    """Whether the motion is another one after each period by a displacement, bool (...)."""
+    own = np.where(carried_contacts(system), ways(cells), 0.0)
+    return np.asarray((np.abs(own) > 0.0).any(axis=-1))
+
+
+def about_middle(system: System, cells: Cells) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest displacements (..., N + n) of a free structure, about the middle of the motion.
+
+    Its place is arbitrary.  A motion has no ends that drifts, or that wanders without repeating.
+    """
+    half, carried = 0.5 * (cells.highest - cells.lowest), carried_contacts(system)
+    lost = drifts(system, cells) | (cells.status == regimes.IRREGULAR)
+    placed = np.append(carried, np.ones(half.shape[-1] - carried.size, dtype=bool))
+    half = np.where(lost[..., np.newaxis] & placed, np.nan, half)
+    return -half, half
 
 
 def allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:

@@ -51,9 +51,7 @@ def modal_system(system: System) -> ModalSystem:
     modes = system.modes
     general = general_of(system)
     phi, w = modes.phi, modes.w
-    damping = phi.T @ modes.damping @ phi
-    if modes.participating_coupling() is None:  # C does not couple modes: the rest is rounding error
-        damping = np.diag(2.0 * modes.zeta * w)
+    damping = modes.damping_in_modes()
     vectors = general.vectors
     chi = vectors @ phi
     small = (
@@ -117,7 +115,7 @@ def least_ratio(system: System) -> float:
     return _fastest(modal_system(system), springs(general_of(system))) / _HIGHEST_RATE
 
 
-def _symmetric(general: ContactSystem) -> bool:
+def is_symmetric(general: ContactSystem) -> bool:
     """Whether x(tau + pi) = -x(tau) is a motion if x is one."""
     loads = (*general.forces, *general.base)
     normal = [n for group in general.groups for n in group.first.nu]
@@ -127,8 +125,12 @@ def _symmetric(general: ContactSystem) -> bool:
 
 def static_offset(system: System) -> tuple[np.ndarray, np.ndarray]:
     """Displacements in the contacts (N,) and of the masses (n,) under the constant loads."""
-    general = general_of(system)
-    x = np.linalg.solve(system.modes.stiffness, general.offset)
+    general, modes = general_of(system), system.modes
+    if system.rigid_modes:  # the place of which is arbitrary: that with the masses' centre at 0
+        elastic = modes.phi[:, system.rigid_modes :] / modes.w[system.rigid_modes :]
+        x = elastic @ (elastic.T @ general.offset)
+    else:
+        x = np.linalg.solve(modes.stiffness, general.offset)
     return general.vectors @ x, x
 
 
@@ -196,6 +198,8 @@ def problem_of(system: System, r: np.ndarray) -> tuple[Problem, ModalSystem]:
     spring = springs(general)
     rates = _rates(modal, spring, orders, r)
     _refuse_low(rates, r)
+    if general.free and (r == 0.0).any():
+        raise InputError("r", "must be > 0 for a free structure, which no slow load leaves at a place; got 0")
     push = modal.phi.T @ np.array([channel.push for channel in channels]).T
     load = np.abs(push[np.newaxis]) @ np.hypot(phasors[:, 0], phasors[:, 1]).sum(axis=2)[:, :, np.newaxis]
     sizes = (load[:, :, 0] / (modal.squares + (r * r)[:, np.newaxis])).max(axis=1)
@@ -207,6 +211,6 @@ def problem_of(system: System, r: np.ndarray) -> tuple[Problem, ModalSystem]:
         np.ascontiguousarray(np.array([channel.base for channel in channels]).T),
         np.ascontiguousarray(np.array([channel.normal for channel in channels]).T),
         spring, belt, ties(general.vectors, moved, belt, spring), np.array(orders, dtype=float), r, phasors,
-        rates, np.where(sizes > 0.0, sizes, 1.0), _symmetric(general),
+        rates, np.where(sizes > 0.0, sizes, 1.0), is_symmetric(general),
     )  # fmt: skip
     return problem, modal

@@ -12,7 +12,7 @@ from .._kernels.engine.policies import MOVING_START, MOVING_START_CAP
 from .._kernels.general.problem import Problem
 from ..model.settings import Start
 from ..model.system import System
-from .boundaries import rest_states
+from .boundaries import load_velocities, moving_alone, rest_states
 from .held import held_forces
 from .problem import ModalSystem, general_of
 
@@ -34,6 +34,8 @@ def _moving_states(system: System, modal: ModalSystem, r: np.ndarray) -> np.ndar
     general = general_of(system)
     direction, phase = _loaded_contact(system, modal, r)
     speeds = _largest_speeds(system, modal, r) * direction
+    alone = moving_alone(system, modal)
+    speeds[:, alone] = load_velocities(system, modal, r, phase)[:, alone]
     state = np.stack((np.zeros_like(speeds), speeds, np.repeat(phase[:, np.newaxis], speeds.shape[1], 1)), 1)
     if any(group.base for group in general.groups):
         ones = modal.phi.T @ modal.mass.sum(axis=1)

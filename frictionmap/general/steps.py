@@ -23,7 +23,7 @@ from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines
 from .held import least_static_friction
-from .outputs import allocate
+from .outputs import allocate, drifts
 from .problem import ModalSystem, general_of, problem_of, static_offset
 from .recorded import recorded_state
 from .starts import initial_states
@@ -57,6 +57,7 @@ class Steps:
     shown: int  # periods of the load that are shown, from tau = 0 on
     span: int  # periods that the steps cover
     cycles: float
+    drifts: bool = False  # whether the motion is displaced after each period, of a free structure
 
     @property
     def contacts(self) -> int:
@@ -131,6 +132,22 @@ def _cells(system: System, problem: Problem, counts: np.ndarray, halves: int, re
     return cells
 
 
+def _centre(problem: Problem, series: np.ndarray, lengths: np.ndarray, h: float) -> None:
+    """Move a free structure so that the mean of each rigid-body mode over the steps is 0.
+
+    series : (steps, rows, WIDTH), changed
+    lengths : (steps,)
+    """
+    rigid = np.flatnonzero(problem.squares == 0.0)
+    x = lengths / h
+    powers = x[:, np.newaxis] ** np.arange(1, LONG + 1) / np.arange(1, LONG + 1)
+    whole = np.einsum("srk,sk->r", series[:, rigid, :LONG], h * powers)
+    means = whole / lengths.sum()
+    first = sum(problem.push.shape)  # the rows of z follow those of modes and channels
+    series[:, rigid, 0] -= means
+    series[:, first : first + problem.spring.size, 0] -= problem.chi[:, rigid] @ means
+
+
 def steps_of(system: System, r: float, beta: float, mu: float, solver: Solver) -> Steps:
     """Find the steady state of one cell.
 
@@ -152,8 +169,9 @@ def cell_steps(
     start = initial_states(system, problem, modal, solver.start)[i]
     phi = np.ascontiguousarray(modal.phi)
     found, halves, multiplier, counts, record, h, count = recorded_state(
-        problem, i, friction, start, (solver.cycles, solver.tolerance), phi, _FIRST
-    )
+        problem, i, friction, start, (solver.cycles, solver.tolerance), phi, _FIRST,
+        settled=not system.rigid_modes,
+    )  # fmt: skip
     if found.status not in (REPEATS, AVERAGED):
         raise NoSteadyState(
             f"r = {problem.r[i]:g}, beta = {beta:g}, mu = {mu:g}: no steady state was found in "
@@ -168,12 +186,15 @@ def cell_steps(
     lengths = record.patterns[:count, -1] * h
     begins = np.concatenate(([0.0], np.cumsum(lengths)[:-1]))
     own = lengths > 0.0
+    series = record.steps[:count][own]
+    if system.rigid_modes:
+        _centre(problem, series, lengths[own], h)
     cells = _cells(system, problem, counts, 2 * averaged, record)
     cells.status[:] = regimes.RESOLVED if period else regimes.IRREGULAR
     cells.origin[:] = regimes.PERIODIC_ORBIT if period else regimes.INTEGRATED
     cells.period[:], cells.multiplier[:], cells.cycles[:] = period, multiplier, np.ceil(found.cycles)
     return Steps(
         problem, modal, friction, float(problem.r[i]), begins[own], lengths[own], h,
-        record.steps[:count][own], record.patterns[:count][own][:, :-1].astype(np.int8), cells,
-        period, shown, span, found.cycles,
+        series, record.patterns[:count][own][:, :-1].astype(np.int8), cells,
+        period, shown, span, found.cycles, bool(system.rigid_modes and drifts(system, cells).any()),
     )  # fmt: skip

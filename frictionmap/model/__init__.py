@@ -10,12 +10,13 @@ periodic_load       loads of several harmonics: waveforms, tables, samples
 contact             a contact with its spring, belt and normal load
 general             systems with several contacts or harmonics: checks, parallel contacts, loops
 sizes               sizes of steady states that a design is about
-matrices            mass, stiffness and damping matrices: small, dense, definite
 phasors             complex arrays as pairs of real ones, which are rounded alike at any position
 damped_oscillators  a damped structure as oscillators that do not depend on r
 free_structure      the sliding structure as oscillators
 balance             linear response at many frequencies, free or held
 modes               modes, participation factors of contact and load, the structure held at its contact
+rigid_modes         structures that no spring holds at a place
+matrices            mass, stiffness and damping matrices: small, dense, definite
 decoupling          the error of neglecting the damping that couples modes
 coupled_modes       structures whose damping couples their modes: responses to loads
 system              `System`: structure, damping, load, contact, and their valid values

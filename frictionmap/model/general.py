@@ -149,6 +149,7 @@ class ContactSystem:
     base: Mapping[int, complex]  # phasors of the base motion
     offset: np.ndarray  # (n,) constant loads
     loop: str = ""  # numbers of the rigid contacts that close a loop; empty without one
+    free: bool = False  # whether the structure has rigid-body modes
 
     @property
     def count(self) -> int:
@@ -201,7 +202,9 @@ def contact_system(system: Definition) -> ContactSystem:
             "cannot use", "load_offset", "with base excitation: it is a force on each mass; omit one"
         )
     offset = _offset(system.load_offset, system.n)
-    found = ContactSystem(groups, forces, base, offset, _describe_loop(groups))
+    found = ContactSystem(
+        groups, forces, base, offset, _describe_loop(groups), free=getattr(system, "rigid_modes", 0) > 0
+    )
     if not found.forces and not found.base:
         if not any(group.first.wall_velocity for group in groups):
             raise InputError("load_harmonics", "must have a harmonic that is not zero; got none")
@@ -218,6 +221,11 @@ def refuse_general(system: Definition, what: str) -> None:
     what : words after "cannot", such as "compute peak thresholds"
     """
     if system.general is not None:
+        if system.general.free:
+            raise InputError(
+                f"cannot {what} of a free structure: this is offered where springs hold it at a place; add a "
+                f"spring to the ground, such as 1e-6 of the others"
+            )
         used = [name for name in KEYS if getattr(system, name) not in (None, 0.0)]
         raise InputError(
             f"cannot {what} of a system with {used[0]}: this is offered for one rigid contact under one "

@@ -9,6 +9,7 @@ from ..structures.dofs import Dofs
 from ..structures.files import NAMES
 from ..structures.reduction import Reduction
 from ..structures.structure import LARGEST, TOLERANCE, Structure, in_range
+from .rigid_modes import count_rigid
 
 #: Largest number of degrees of freedom without reduction; the modes of more would take minutes and gigabytes.
 _MOST_WHOLE = 2000
@@ -26,6 +27,7 @@ class Matrices:
     source: str  # names of the files, or ""
     dofs: Dofs  # numbers or labels of the rows
     reduction: Reduction | None = None  # reduction of a larger structure to these matrices
+    rigid_modes: int = 0  # number of zero eigenvalues of K
 
     @property
     def n(self) -> int:
@@ -76,7 +78,7 @@ def full_matrices(structure: Structure) -> Matrices:
     Raises
     ------
     InputError
-        There are too many degrees of freedom, or M or K is not positive definite, or C is indefinite.
+        There are too many degrees of freedom, or M is not positive definite, or K or C is indefinite.
     """
     if structure.n > _MOST_WHOLE:
         raise InputError(
@@ -108,16 +110,16 @@ def reduced_matrices(reduction: Reduction) -> Matrices:
 
 
 def definite(arrays: dict[str, np.ndarray], dofs: Dofs, source: str) -> Matrices:
-    """Matrices (n, n) of a structure, after checking that M and K are positive definite and C is not
+    """Matrices (n, n) of a structure, after checking that M is positive definite, and K and C are not
     indefinite.
     """
     _definite(arrays["M"], "M")
-    _definite(arrays["K"], "K")
+    rigid = count_rigid(arrays["K"])
     if "C" in arrays:
         _semidefinite(arrays["C"])
     for array in arrays.values():
         array.setflags(write=False)
-    return Matrices(arrays["M"], arrays["K"], arrays.get("C"), source, dofs)
+    return Matrices(arrays["M"], arrays["K"], arrays.get("C"), source, dofs, rigid_modes=rigid)
 
 
 def _definite(array: np.ndarray, name: str) -> None:

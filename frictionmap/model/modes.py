@@ -310,6 +310,12 @@ class ModalModel:
         """Coupling of the participating modes by the damping; None without coupling."""
         return None
 
+    def damping_in_modes(self) -> np.ndarray:
+        """C in modal coordinates (n, n), without the rounding errors of modes that it does not couple."""
+        if self.participating_coupling() is None:
+            return np.diag(2.0 * self.zeta * self.w)
+        return self.phi.T @ self.damping @ self.phi
+
     @cached_property
     def free(self) -> FreeStructure:
         """The participating modes as oscillators."""

@@ -56,6 +56,7 @@ GeneralOutput = Literal[
     "peak_to_peak",
     "midpoint",
     "work_wall",
+    "mean_velocity",
     "release_order",
 ]
 GENERAL_OUTPUTS: tuple[str, ...] = get_args(GeneralOutput)

@@ -42,6 +42,7 @@ from .modes import (
     solve_modes,
 )
 from .periodic_load import PeriodicLoad
+from .rigid_modes import FreeModel, check_free, free_model, sort_rigid, without_rigid
 from .shown import Shown
 
 EXCITATIONS = ("force", "base")
@@ -69,10 +70,16 @@ def _ratios(values: object, name: str) -> tuple[float, ...]:
     values = _sequence(values, name, "numbers")
     if len(values) == 0:
         raise InputError(name, "must have at least one value; got none")
-    ratios = tuple(checks.number(value, f"{name}[{index}]", above=0.0) for index, value in enumerate(values))
-    if ratios[0] != 1.0:
-        raise InputError(f"{name}[0]", f"must be 1, the unit of the others; got {ratios[0]:g}")
-    return ratios
+    free = name == "stiffness_ratios" and not isinstance(values[0], bool) and values[0] == 0
+    first = int(free)  # number of the ratio that is the unit of the others
+    ratios = tuple(
+        checks.number(value, f"{name}[{index}]", above=0.0)
+        for index, value in enumerate(values[first:], first)
+    )
+    if ratios and ratios[0] != 1.0:
+        other = ", or 0 for no spring to the ground" * (name == "stiffness_ratios" and not free)
+        raise InputError(f"{name}[{first}]", f"must be 1, the unit of the others{other}; got {ratios[0]:g}")
+    return (0.0,) * first + ratios
 
 
 def _damping(values: object, n: int) -> tuple[float, ...]:
@@ -151,7 +158,10 @@ class System(Shown):
         The mass on which the harmonic load acts, counted from 1, or its label; default: the first.  With base
         excitation it is always the first.
     mass_ratios, stiffness_ratios : sequence of float, optional
-        gamma_i = m_i/m_1 and kappa_i = k_i/k_1 [-] of a chain, > 0, the first one 1; default: one mass.
+        gamma_i = m_i/m_1 and kappa_i = k_i/k_1 [-] of a chain, > 0, the first one 1; default: one mass.  The
+        first stiffness ratio may be 0: no spring holds the chain at a place, and k_2, with the ratio 1,
+        takes the place of k_1.  A single mass without a spring has the unit k_1 = m_1 omega_1^2 with any
+        omega_1, and r = omega/omega_1.
     damping_ratios : float or sequence of float, optional
         Damping ratio zeta [-] of all modes, or one value per mode in the order of the natural frequencies, 0
         to 100; values >= 1 are allowed.  Default 0.
@@ -163,11 +173,12 @@ class System(Shown):
         of a file with all of them (.npz, .mat; .op4 and .pch of Nastran), or a mapping of arrays, dense or
         sparse, or of paths: Matrix Market or Abaqus (.mtx), Harwell-Boeing (.hb, .rb, .rsa, .rua).  An array
         `dofs` (n,) next to M and K gives the numbers of the degrees of freedom, instead of 1 to n.  The
-        matrices are real and symmetric; M and K are positive definite.  C replaces damping_ratios: it is
-        positive semi-definite, and may couple the undamped modes, as single dashpots do.
+        matrices are real and symmetric; M is positive definite, K positive semi-definite: its zero
+        eigenvalues are rigid-body modes.  C replaces damping_ratios: it is positive semi-definite, and may
+        couple the undamped modes, as single dashpots do.
     frequency_scale : float, optional
         With matrices: r = omega/frequency_scale, in the units of sqrt(K/M); default: the first natural
-        frequency, before any reduction.  For a chain it is sqrt(k_1/m_1).
+        frequency, before any reduction, of those above 0.  For a chain it is sqrt(k_1/m_1).
     stiffness_scale : float
         With matrices: displacements are in P/stiffness_scale, in the units of K.  For a chain it is k_1.
     excitation : {"force", "base"}, optional
@@ -279,15 +290,18 @@ class System(Shown):
         self._set("_scale", scale)
         self._check_damping()
         self._set("_contact_system", contact_system(self))
-        if self.reduce is not None and uses_general(self):
+        if self.reduce is not None and (uses_general(self) or self.rigid_modes):
             raise InputError(
                 "cannot use",
                 "reduce",
-                "with several contacts, springs, belts or loads of several harmonics: they "
+                "with several contacts, springs, belts, loads of several harmonics or a free structure: they "
                 "need all degrees of freedom; omit it",
             )
-        if self.n > 1 or self.matrices is not None or self.dampers is not None:
+        given = (self.matrices, self.dampers)
+        if self.n > 1 or self.rigid_modes or any(one is not None for one in given):
             _ = self.modes  # errors that only the modes reveal are raised here
+        if self.rigid_modes:
+            check_free(self, self.modes)
 
     def _filled(self) -> Mapping[str, object]:
         one = (1.0,) if self.matrices is None and self.n == 1 else None
@@ -458,7 +472,14 @@ class System(Shown):
     @property
     def general(self) -> ContactSystem | None:
         """Data of the general engine; None for one rigid contact under one harmonic load."""
-        return self._contact_system if uses_general(self) else None
+        return self._contact_system if uses_general(self) or self.rigid_modes else None
+
+    @property
+    def rigid_modes(self) -> int:
+        """Number of rigid-body modes, against which no spring acts: 0 unless the structure is free."""
+        if isinstance(self.matrices, Matrices):
+            return self.matrices.rigid_modes
+        return int(self.matrices is None and self.stiffness_ratios[0] == 0.0)  # type: ignore[index]
 
     @property
     def n(self) -> int:
@@ -568,8 +589,13 @@ class System(Shown):
         if self._scale is not None:
             return self._scale
         assert isinstance(self.matrices, Matrices)
+        if self.rigid_modes == self.n:
+            raise InputError(
+                "frequency_scale",
+                "must be given for K = 0, which gives no natural frequency as its unit; got none",
+            )
         w, _ = self._solve(self.matrices.mass, self.matrices.stiffness)
-        return float(w[0])
+        return float(w[self.rigid_modes])
 
     def _solve(self, mass: np.ndarray, stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solve for frequencies and modes; refuse if the lowest frequency is below the rounding error of the
@@ -579,7 +605,10 @@ class System(Shown):
             w, phi = solve_chain_modes(np.array(self.mass_ratios), np.array(self.stiffness_ratios))
         else:
             w, phi = solve_modes(mass, stiffness)
-        if not w[0] > math.sqrt(w.size * _EPS) * w[-1]:
+        rigid = self.rigid_modes
+        if rigid:
+            w[:rigid] = 0.0
+        if rigid < self.n and not w[rigid] > math.sqrt(w.size * _EPS) * w[-1]:
             name = "mass_ratios and stiffness_ratios" if self.matrices is None else "matrices"
             raise InputError(
                 f"cannot compute the natural frequencies: the highest, {w[-1]:.3g}, exceeds the lowest by "
@@ -612,7 +641,8 @@ class System(Shown):
         """Damping ratios of C = a M + b K."""
         a, b = self.rayleigh  # type: ignore[misc]
         omega = w * self._frequency_scale
-        zeta = 0.5 * (a / omega + b * omega)
+        elastic = omega > 0.0
+        zeta = np.where(elastic, 0.5 * (a / np.where(elastic, omega, 1.0) + b * omega), 0.0)
         if zeta.max() > checks.LARGEST_DAMPING:
             raise InputError(
                 "rayleigh", f"must make damping ratios <= {checks.LARGEST_DAMPING:g}; got {zeta.max():.3g}"
@@ -636,6 +666,10 @@ class System(Shown):
         if given is None:
             zeta = np.array(self.damping_ratios) if self.rayleigh is None else self._rayleigh_ratios(w)
             return _DampedModes(w, phi, zeta)
+        if self.rigid_modes:
+            if self.decouple is not None:
+                raise InputError("cannot use", "decouple", "with a free structure: C is used whole; omit it")
+            return _DampedModes(w, phi, np.zeros(self.n), coupled=given)
         zeta, phi, coupling = damped_modes(given, w, phi)
         self._check_ratios(zeta)
         if coupling <= _MOST_COUPLING:
@@ -657,6 +691,8 @@ class System(Shown):
             "stiffness": stiffness,
         }
         to_base = self.damping_reference == "base"
+        if self.rigid_modes:
+            return self._free_model(mass, w, phi, zeta, coupled, parts)
         if coupled is not None:
             return coupled_model(w, phi, coupled, to_base, parts)
         phi = align_with_contact(w, zeta, phi, parts["contact"])
@@ -664,6 +700,22 @@ class System(Shown):
         springs = np.array(self.stiffness_ratios) if self.matrices is None else None
         rate = load_rate(damping, to_base)
         return ModalModel(w, phi, zeta, load_rate=rate, damping=damping, springs=springs, **parts)
+
+    def _free_model(
+        self, mass: np.ndarray, w: np.ndarray, phi: np.ndarray, zeta: np.ndarray, given: np.ndarray | None,
+        parts: dict[str, Any],
+    ) -> FreeModel:  # fmt: skip
+        """The model of a structure with rigid-body modes."""
+        damping = modal_damping(mass, w, phi, zeta) if given is None else given
+        if self.rayleigh is not None:  # C = a M + b K also damps rigid-body modes
+            rates = self.rayleigh[0] / self._frequency_scale, self.rayleigh[1] * self._frequency_scale
+            damping = rates[0] * mass + rates[1] * parts["stiffness"]
+        rigid = phi[:, : self.rigid_modes]
+        rigid = sort_rigid(rigid, self.contact_system.vectors, damping)
+        parts["stiffness"] = without_rigid(mass, parts["stiffness"], rigid)
+        turned = np.hstack((rigid, phi[:, self.rigid_modes :]))
+        rate = load_rate(damping, self.damping_reference == "base")
+        return free_model(w, turned, damping, rate, parts)
 
     def contact_load(self, r: np.ndarray) -> np.ndarray:
         """Phasor F of the load in the contact when it is held, over P (complex, shape of r).

@@ -111,7 +111,11 @@ def factor(matrix: Any) -> Any:
         found = None
     # without row exchanges the pivots have the signs of the eigenvalues
     if found is None or not (found.U.diagonal() > 0.0).all():
-        raise InputError("matrices", ": K must be positive definite; got a singular or indefinite matrix")
+        raise InputError(
+            "matrices",
+            ": K must be positive definite; got a singular or indefinite matrix; a free structure can be "
+            "used without reduce, or with a spring to the ground, such as 1e-6 of the others",
+        )
     return found
 
 

@@ -89,9 +89,9 @@ def _dofs(found: GivenMatrices, n: int) -> tuple[Dofs, np.ndarray | None]:
 
 
 def in_range(array: Any, name: str) -> bool:
-    """Whether the largest entry is of a size to calculate with; C may be zero."""
+    """Whether the largest entry is of a size to calculate with; K and C may be zero."""
     largest = float(abs(array).max())
-    return 1.0 / LARGEST <= largest <= LARGEST or (name == "C" and largest == 0.0)
+    return 1.0 / LARGEST <= largest <= LARGEST or (name != "M" and largest == 0.0)
 
 
 def _square(given: Any, name: str) -> Any:

@@ -24,7 +24,7 @@ from .counts import (
 from .follow import FOLLOWED, follow
 from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES, begin_cycle, clear_record
 from .recurrence import keep
-from .return_map import put_state, take_state
+from .return_map import forget_places, put_state, take_state
 
 #: Columns of the log, each for all contacts: numbers that are added over the time ...
 _STOPS, _TURNS, _STUCK, _SLIPS, _REVERSALS, _DISTANCE, _WORK, _WALL_WORK = 0, 1, 2, 3, 4, 5, 6, 7
@@ -126,9 +126,11 @@ def follow_cycle(problem, friction, followed, workspace):
             code = follow(problem, row, friction, half, motion, memory.box, counts, record, False)
             if half == 1:
                 take_state(motion, memory.start, memory.senses, 1.0)
+                forget_places(problem, memory.start)
                 keep(memory, ring)
             elif problem.symmetric:  # the states of symmetric systems are kept with the sign of `go_round`
                 take_state(motion, memory.start, memory.senses, -1.0)
+                forget_places(problem, memory.start)
                 keep(memory, ring)
     record.active[0] = NOTHING
     slot = int((followed - course.begun[0]) / course.log[CAPACITY, LENGTH])

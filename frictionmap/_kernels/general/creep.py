@@ -11,7 +11,7 @@ from .counts import MOVED, STUCK
 from .follow import FOLLOWED
 from .laws.kinds import has_force
 from .orbits import DRIFTS, NO_REPEAT, REPEATS, drifts, newton
-from .problem import F, Q
+from .problem import F, Q, is_carried, is_rigid
 from .record import FORCES, HIGH, LOW, NOTHING, clear_record
 from .recurrence import go_back
 from .return_map import copy_motion, go_round, take_end
@@ -98,12 +98,11 @@ def _displace(problem, memory, j, change):
 
     A structure that nothing holds against a constant force stays where it is.
     """
-    modes = problem.push.shape[0]
-    for m in range(modes):
-        if problem.squares[m] <= 0.0:
-            return
-    for m in range(modes):
-        memory.start[Q, m] -= problem.chi[j, m] * change / problem.squares[m]
+    if is_carried(problem, j):
+        return
+    for m in range(problem.push.shape[0]):
+        if not is_rigid(problem, m):
+            memory.start[Q, m] -= problem.chi[j, m] * change / problem.squares[m]
     if has_force(problem, j):
         memory.start[F, j] += change
 

@@ -44,14 +44,14 @@ _UNKNOWN, _SOME_SLIP, _STAYS = 0, 1, 2
 
 
 #: Numbers of a contact that are stored, per period of the load: counted ones; standard errors of averages;
-#: least slip, sliding distance, works of friction and of a wall at constant velocity.
+#: least slip, sliding distance, works of friction and of a wall at constant velocity; displacement by drift.
 NUMBERS = (
     "stops", "turns", "stuck", "slips", "reversals", "stops_error", "stuck_error",
-    "least_slip", "distance", "work_friction", "work_wall",
+    "least_slip", "distance", "work_friction", "work_wall", "drift",
 )  # fmt: skip
 (
     _STOPS, _TURNS, _STUCK, _SLIPS, _REVERSALS, _STOPS_ERROR, _STUCK_ERROR,
-    _LEAST_SLIP, _DISTANCE, _WORK_FRICTION, _WORK_WALL,
+    _LEAST_SLIP, _DISTANCE, _WORK_FRICTION, _WORK_WALL, _DRIFT,
 ) = range(len(NUMBERS))  # fmt: skip
 
 
@@ -121,6 +121,7 @@ def _store_numbers(problem, numbers, m, i, b, counts, halves, record):
         numbers[_DISTANCE, m, i, b, j] = record.distance[j] / period
         numbers[_WORK_FRICTION, m, i, b, j] = record.works[OF_FRICTION, j] / period
         numbers[_WORK_WALL, m, i, b, j] = record.works[OF_WALL, j] / period
+        numbers[_DRIFT, m, i, b, j] = record.drift[j] / period
 
 
 @kernel

@@ -9,8 +9,8 @@ from ..structure.newton import solve_linear
 from .counts import MOVED
 from .follow import FOLLOWED
 from .laws.kinds import state_size
-from .problem import SIZE
-from .return_map import fill_newton, go_round, keep_places, motion_size, return_distance, take_step
+from .problem import SIZE, is_carried
+from .return_map import fill_newton, fix_rigid, go_round, keep_places, motion_size, return_distance, take_step
 
 #: Kinds of `Steady`; AVERAGED: the motion stops and starts without returning, see `course`.
 REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED, AVERAGED = 0, 1, 2, 3, 4
@@ -68,6 +68,7 @@ def largest_multiplier(problem, row, halves, precision, motion, memory):
     fill_newton(problem, row, halves, motion, memory)
     if halves % 2 == 1:  # a place where a contact rests becomes its mirror image
         keep_places(problem, row, motion, memory, memory.matrix, -1.0)
+        fix_rigid(problem, memory)
     for a in range(size):
         for b in range(size):
             memory.matrix[a, b] = (1.0 if a == b else 0.0) - memory.matrix[a, b]
@@ -80,12 +81,13 @@ def largest_multiplier(problem, row, halves, precision, motion, memory):
 
 @kernel
 def drifts(problem, counts, halves, j):
-    """Whether a contact slid, on the last way, in one direction where it must come back: at a wall at rest.
+    """Whether a contact slid, on the last way, in one direction where it must come back: at a wall at rest,
+    and with springs that bring it back.
 
     On half periods it comes back in the other half, which mirrors this one.
     """
     slid_one_way = counts[MOVED, j] == 1.0 or counts[MOVED, j] == 2.0
-    return slid_one_way and problem.belt[j] == 0.0 and halves % 2 == 0
+    return slid_one_way and problem.belt[j] == 0.0 and halves % 2 == 0 and not is_carried(problem, j)
 
 
 @kernel

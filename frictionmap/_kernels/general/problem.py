@@ -172,6 +172,38 @@ def normal_row(problem, j):
     return first_contact_row(problem) + 3 * problem.spring.size + j
 
 
+@inner_kernel
+def is_rigid(problem, m):
+    """Whether no spring acts against mode m: a rigid-body mode, whose place changes nothing else."""
+    return problem.squares[m] == 0.0
+
+
+@inner_kernel
+def is_free(problem):
+    """Whether there are rigid-body modes; they come first."""
+    return is_rigid(problem, 0)
+
+
+@kernel
+def moves_alone(problem, m):
+    """Whether nothing but the load acts on mode m: neither springs nor contacts nor damping."""
+    alone = is_rigid(problem, m)
+    for j in range(problem.chi.shape[0]):
+        alone = alone and problem.chi[j, m] == 0.0
+    for k in range(problem.squares.size):
+        alone = alone and problem.damping[m, k] == 0.0
+    return alone
+
+
+@kernel
+def is_carried(problem, j):
+    """Whether a rigid-body mode moves contact j: nothing brings it back to a place."""
+    carried = False
+    for m in range(problem.squares.size):
+        carried = carried or (is_rigid(problem, m) and problem.chi[j, m] != 0.0)
+    return carried
+
+
 @kernel
 def varies(problem, j):
     """Whether the normal load of a contact varies."""

@@ -47,6 +47,7 @@ class Record(NamedTuple):
     forces: np.ndarray  # (2, 2 N) lowest and highest f - limit nu, f + limit nu, where FORCES are kept
     limits: np.ndarray  # (N,) limit of every contact; 0: lowest and highest force
     events: Events  # where EVENTS are kept; see `make_list`
+    drift: np.ndarray  # (N,) displacement in contacts by rigid-body modes over the half periods measured
 
 
 @entry
@@ -59,7 +60,7 @@ def _make(problem, masses, most, listed):
         np.zeros(1, np.int64), np.zeros((2, size)), np.zeros(contacts), np.zeros((3, contacts)),
         np.zeros((2, contacts)), masses, np.zeros((most, rows, WIDTH)), np.zeros((most, contacts + 1)),
         np.zeros(1, np.int64), np.zeros((2, 2 * contacts)), np.zeros(contacts),
-        make_events(contacts, listed),
+        make_events(contacts, listed), np.zeros(contacts),
     )  # fmt: skip
 
 
@@ -271,6 +272,36 @@ def mirror(record):
     for i in range(record.ranges.shape[1]):
         include(record.ranges, i, -record.ranges[LOW, i])
         include(record.ranges, i, -record.ranges[HIGH, i])
+
+
+@kernel
+def _carried(problem, record, way, i):
+    """Displacement of contact i, then of the masses, by displacements `way` (m,) of rigid-body modes."""
+    contacts = problem.spring.size
+    sum_ = 0.0
+    for m in range(way.size):
+        sum_ += (problem.chi[i, m] if i < contacts else record.masses[i - contacts, m]) * way[m]
+    return sum_
+
+
+@kernel
+def keep_drift(problem, way, halves, record):
+    """Keep how far rigid-body modes moved the contacts; after odd half periods their mirror image moves them
+    back, and the ranges become those of the motion about its middle.
+
+    Parameters
+    ----------
+    problem, record : Problem, Record
+    way : (m,) displacement of rigid-body modes over the half periods measured, else 0
+    halves : number of these
+    """
+    for j in range(record.drift.size):
+        record.drift[j] = _carried(problem, record, way, j) if halves % 2 == 0 else 0.0
+    for i in range(record.ranges.shape[1] if halves % 2 == 1 else 0):
+        shift = -0.5 * _carried(problem, record, way, i)
+        if shift != 0.0:  # else the ranges of other structures keep their bits
+            record.ranges[LOW, i] += shift
+            record.ranges[HIGH, i] += shift
 
 
 @kernel

@@ -10,7 +10,7 @@ from .counts import COUNT_ROWS, FIRST_SENSE, LAST_SENSE, MOVED, REVERSALS
 from .follow import FOLLOWED, follow, follow_to_section
 from .laws.kinds import has_force, holding_stiffness, keeps_force, state_size
 from .pattern import BOX_ROWS, begin
-from .problem import SIZE, F, H, P, Q, padded
+from .problem import SIZE, F, H, P, Q, is_rigid, moves_alone, padded
 from .record import NOTHING
 from .series import factor_held, solve_held
 from .tangent import identity
@@ -19,6 +19,9 @@ from .tangent import identity
 #: steps; and of states that differ by rounding errors, 2^-50, hardly one in 10^9 is rounded to another one.
 #: The second number is for the few that a turn near the section keeps from being found from there.
 BITS = (16, 26)
+
+#: Share of the square of a row of places, outside the span of others, that is rounding error.
+_DEPENDENT = 1e-20
 
 
 class Return(NamedTuple):
@@ -32,6 +35,8 @@ class Return(NamedTuple):
     right: np.ndarray  # (size,)
     box: np.ndarray  # scratch of `follow`
     counts: np.ndarray  # counters of the last way
+    way: np.ndarray  # (m,) displacement of the rigid-body modes on the last way, without a sign; else 0
+    tied: np.ndarray  # (m + 1, N) scratch, see `_tie_rigid`
 
 
 @entry
@@ -43,7 +48,7 @@ def make_return(problem):
     return Return(
         np.zeros(shape), np.zeros(contacts, np.int64), np.zeros(shape), np.zeros(contacts, np.int64),
         np.zeros((size, size)), np.zeros(size), np.zeros((BOX_ROWS, contacts)),
-        np.zeros((COUNT_ROWS, contacts)),
+        np.zeros((COUNT_ROWS, contacts)), np.zeros(modes), np.zeros((modes + 1, contacts)),
     )  # fmt: skip
 
 
@@ -94,6 +99,14 @@ def take_state(motion, state, senses, sign):
 
 
 @kernel
+def forget_places(problem, state):
+    """Set the places of rigid-body modes to 0: motions that differ in them alone are the same."""
+    for m in range(problem.squares.size):
+        if is_rigid(problem, m):
+            state[Q, m] = 0.0
+
+
+@kernel
 def go_round(problem, row, friction, halves, motion, memory, record, derive):
     """Follow the motion from `memory.start` over some half periods, to `memory.end`.
 
@@ -126,7 +139,10 @@ def go_round(problem, row, friction, halves, motion, memory, record, derive):
     for j in range(motion.sense.size):  # the first slip follows the last one of the time before
         if memory.counts[FIRST_SENSE, j] * (sign * memory.counts[LAST_SENSE, j]) < 0.0:
             memory.counts[REVERSALS, j] += 1.0
+    for m in range(problem.squares.size):
+        memory.way[m] = motion.state[Q, m] - memory.start[Q, m] if is_rigid(problem, m) else 0.0
     take_state(motion, memory.end, memory.end_senses, sign)
+    forget_places(problem, memory.end)
     return code
 
 
@@ -175,6 +191,7 @@ def from_rest(problem, row, friction, state, motion, memory, record, what):
         follow_to_section(problem, row, friction, tau, motion, memory.box, memory.counts, record)
     record.active[0] = NOTHING
     take_state(motion, memory.start, memory.senses, 1.0)
+    forget_places(problem, memory.start)
 
 
 @kernel
@@ -203,6 +220,8 @@ def round_state(problem, friction, memory, bits):
     step = raster(size, bits)
     for part in range(2):
         for i in range(memory.start.shape[1]):
+            if part == P and i < problem.squares.size and moves_alone(problem, i):
+                continue  # its velocity is that of its load, and no return corrects it
             memory.start[part, i] = rounded(memory.start[part, i], step)
     for j in range(memory.senses.size):
         if memory.senses[j] == 0 and has_force(problem, j):
@@ -268,6 +287,105 @@ def _place_column(problem, row, motion, b):
 
 
 @kernel
+def _tie_rigid(problem, memory):
+    """Fill memory.tied with orthonormal rows that span the places of contacts at rest under rigid-body modes.
+
+    Returns
+    -------
+    int : the number of rigid-body modes that move a contact at rest; the rows of the others are 0
+    """
+    modes, contacts = problem.push.shape[0], problem.spring.size
+    count = 0
+    for m in range(modes):
+        whole = 0.0
+        for j in range(contacts):
+            moves = is_rigid(problem, m) and memory.counts[MOVED, j] == 0.0
+            memory.tied[m, j] = problem.chi[j, m] if moves else 0.0
+            whole += memory.tied[m, j] ** 2
+        if whole == 0.0:
+            continue
+        count += 1
+        _leave_out(memory, m, m)
+        rest = 0.0
+        for j in range(contacts):
+            rest += memory.tied[m, j] ** 2
+        scale = 1.0 / math.sqrt(rest) if rest > _DEPENDENT * whole else 0.0
+        for j in range(contacts):
+            memory.tied[m, j] *= scale
+    return count
+
+
+@kernel
+def _leave_out(memory, at, rows):
+    """Take the parts along the first rows of memory.tied from row `at`, twice against rounding errors."""
+    contacts = memory.senses.size
+    for _ in range(2):
+        for m in range(rows):
+            part = 0.0
+            for j in range(contacts):
+                part += memory.tied[m, j] * memory.tied[at, j]
+            for j in range(contacts):
+                memory.tied[at, j] -= part * memory.tied[m, j]
+
+
+@kernel
+def _keep_free_places(problem, row, motion, memory, matrix, weight):
+    """Add weight U L to the equations as `keep_places` does, where rigid-body modes move contacts at rest.
+
+    L are those sums of places that no rigid-body mode changes: with L = P z and an orthogonal projector P,
+    L U = P, and the equations without the rigid-body modes are regular.
+    """
+    modes, contacts = problem.push.shape[0], problem.spring.size
+    left = memory.tied[modes]
+    for b in range(2 * modes + contacts):
+        elastic = b >= 2 * modes and keeps_force(problem, motion, b - 2 * modes)
+        if not (elastic or (b < modes and not is_rigid(problem, b))):
+            continue
+        for j in range(contacts):
+            left[j] = 0.0
+            if b < modes and memory.counts[MOVED, j] == 0.0:
+                left[j] = problem.chi[j, b]
+        if elastic:
+            left[b - 2 * modes] = -1.0 / holding_stiffness(problem, b - 2 * modes)
+        _leave_out(memory, modes, modes)
+        right = motion.solve[contacts]
+        for a in range(motion.held[contacts]):
+            right[a] = left[motion.held[a]]
+        solve_held(motion, right)
+        for m in range(modes):
+            motion.watched[m] = 0.0
+            for a in range(motion.held[contacts]):
+                motion.watched[m] += row.reaction[motion.held[a], m] * right[a]
+            matrix[m, b] += weight * motion.watched[m]
+        for j in range(contacts):
+            if keeps_force(problem, motion, j):
+                rest = left[j]
+                for m in range(modes):
+                    rest -= problem.chi[j, m] * motion.watched[m]
+                matrix[2 * modes + j, b] -= weight * holding_stiffness(problem, j) * rest
+
+
+@kernel
+def _fix(memory, i, size):
+    """Leave coordinate i as it is in a Newton step."""
+    for a in range(size):
+        memory.matrix[i, a] = memory.matrix[a, i] = 0.0
+    memory.matrix[i, i] = 1.0
+    memory.right[i] = 0.0
+
+
+@kernel
+def fix_rigid(problem, memory):
+    """Leave the places of rigid-body modes as they are, and velocities that only the load determines."""
+    modes, size = problem.push.shape[0], state_size(problem)
+    for m in range(modes):
+        if is_rigid(problem, m):
+            _fix(memory, m, size)
+            if moves_alone(problem, m):
+                _fix(memory, modes + m, size)
+
+
+@kernel
 def keep_places(problem, row, motion, memory, matrix, weight):
     """Add weight U L, with L U = 1: L are the places that the return map keeps, of contacts that rest.
 
@@ -287,6 +405,9 @@ def keep_places(problem, row, motion, memory, matrix, weight):
     for j in range(contacts):
         motion.sense[j] = 1 if memory.counts[MOVED, j] != 0.0 else 0
     factor_held(problem, row, motion)  # as when all of them were held
+    if _tie_rigid(problem, memory) > 0:
+        _keep_free_places(problem, row, motion, memory, matrix, weight)
+        return
     for b in range(modes):
         _place_column(problem, row, motion, b)
         for m in range(modes):
@@ -329,6 +450,7 @@ def fill_newton(problem, row, halves, motion, memory):
         memory.right[modes + m] = memory.end[P, m] - memory.start[P, m]
     for j in range(size - 2 * modes):
         memory.right[2 * modes + j] = memory.end[F, j] - memory.start[F, j]
+    fix_rigid(problem, memory)
 
 
 @kernel

@@ -17,7 +17,7 @@ from ..compiler import entry, inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store
 from .crossings import fill_controls, value_at
 from .laws.kinds import RIGID, kind_of
-from .problem import LONG, SECTION, TERMS, WIDTH, H, R
+from .problem import LONG, SECTION, TERMS, WIDTH, H, R, is_rigid
 from .row import most_intervals
 
 #: Rows of `Single.series`: displacement and velocity of the motions that all intervals share ...
@@ -194,7 +194,7 @@ def forget_row(single):
 def fits_row(problem, row, single, base):
     """Whether there are tables of a row, of `base` half periods; they are filled when first needed."""
     if single.fits[0] == _UNKNOWN:
-        none = single.series.shape[0] == _COMMON
+        none = single.series.shape[0] == _COMMON or is_rigid(problem, 0)
         single.fits[0] = 0 if none or force_row(base * row.intervals[0]) > single.series.shape[0] else 1
         if single.fits[0] == 1:
             _fill(problem, row, single, base * row.intervals[0])

@@ -47,8 +47,8 @@ from .places import (
     settle_places,
     stop_contacts,
 )
-from .problem import H, Motion, Row
-from .record import NOTHING, RANGES, STEPS, Record, clear_record, join_slips, make_record, mirror
+from .problem import H, Motion, Row, is_free
+from .record import NOTHING, RANGES, STEPS, Record, clear_record, join_slips, keep_drift, make_record, mirror
 from .recurrence import (
     Ring,
     find_long_recurrence,
@@ -294,6 +294,7 @@ def measure(problem, friction, halves, workspace, what):
     if not found:
         return 0, math.nan
     join_slips(record, both)
+    keep_drift(problem, memory.way, both, record)
     if both % 2 == 1:
         mirror(record)
     return both, multiplier ** (steady_period(halves) * 2.0 / both)
@@ -415,7 +416,8 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
     cycles, tolerance : see `find`
     workspace : Workspace after `begin_row`
     what : see `measure`
-    settled : whether the places of contacts at rest are wanted, and bits that do not depend on the way
+    settled : whether the places of contacts at rest are wanted, and bits that do not depend on the way; those
+        of a free structure are arbitrary
 
     Returns
     -------
@@ -431,7 +433,7 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
         copy_motion(memory.start, memory.senses, workspace.ring.orbit, workspace.ring.orbit_senses)
         if not unique:  # the last way was not over the whole period
             go_round(problem, row, friction, found.halves, workspace.motion, memory, record, False)
-        if find_rests(memory, workspace.places) > 0:
+        if find_rests(memory, workspace.places) > 0 and not is_free(problem):
             found = _settle(problem, friction, state, found, cycles, tolerance, workspace)
         elif unique:
             if by_tables:

@@ -738,7 +738,8 @@ class System(Shown):
         contacts = describe_contacts(self.contact_system, self.dofs)
         words = (contacts, self._describe_load(), self._describe_damping())
         if self.n == 1 and self.matrices is None:
-            return f"one mass; {words[0]}, {words[1]}; {words[2]}"
+            spring = " without a spring" * self.rigid_modes
+            return f"one mass{spring}; {words[0]}, {words[1]}; {words[2]}"
         return "; ".join((self._describe_structure(), *words))
 
     def _repr_html_(self) -> str:
@@ -775,7 +776,7 @@ class System(Shown):
             through = "the spring" if one else "the springs"
             if self.damping_reference == "base":
                 through += " and dashpot" if one else " and dashpots"
-            elif not one:
+            elif not one or self.rigid_modes:
                 return "base motion"
             return f"harmonic base motion through {through}"
         if self.load is not None:

@@ -36,6 +36,7 @@ ratio = 0.5
 ELASTIC = "[system]\ndamping_ratios = 0.02\ncontact_stiffness = 1.0\n" + GRID
 BELT = "[system]\ndamping_ratios = 0.02\nwall_velocity = 0.5\n" + GRID
 SQUARE = '[system]\ndamping_ratios = 0.02\nwaveform = "square"\nharmonics = 7\n' + GRID
+FREE = '[system]\ncontact = "joined-base-wall"\nstiffness_ratios = [0]\n' + GRID
 
 
 @pytest.fixture(scope="module")
@@ -46,8 +47,9 @@ def pages(tmp_path_factory):
         served(scene_from(tmp_path_factory.mktemp("elastic"), ELASTIC)) as elastic,
         served(scene_from(tmp_path_factory.mktemp("belt"), BELT)) as belt,
         served(scene_from(tmp_path_factory.mktemp("square"), SQUARE)) as square,
+        served(scene_from(tmp_path_factory.mktemp("free"), FREE)) as free,
     ):
-        yield {"two": two, "elastic": elastic, "belt": belt, "square": square}
+        yield {"two": two, "elastic": elastic, "belt": belt, "square": square, "free": free}
 
 
 def middles(low, high, count):
@@ -124,6 +126,14 @@ def test_a_belt_pulls_one_way(pages):
     assert "beta_stick" not in arrays  # the belt takes a stuck mass along
 
 
+def test_a_block_without_a_spring_is_shown(pages):
+    ds = swept(pages["free"], "stops_per_cycle")
+    _, arrays = packet(pages["free"], f"/map?{PIECE}&lines=12")
+    np.testing.assert_array_equal(arrays["classes"], of_cells(ds.regime.values, ds.stops_per_cycle.values))
+    for name in ("beta_lim", "beta_stick"):
+        np.testing.assert_array_equal(arrays[name], ds[name].values)
+
+
 def test_further_ranges_without_stops_are_those_of_sweep(pages):
     ds = swept(pages["square"])
     _, arrays = packet(pages["square"], f"/map?{PIECE}")
@@ -162,7 +172,7 @@ def test_a_cell_of_one_contact_shows_that_one(pages):
 
 
 @pytest.mark.parametrize(
-    ("name", "words"), [("elastic", "slips per cycle"), ("belt", "stop"), ("square", "stop")]
+    ("name", "words"), [("elastic", "slips per cycle"), ("belt", "stop"), ("square", "stop"), ("free", "")]
 )
 def test_one_contact_has_plain_curves(pages, name, words):
     ds = fm.response(pages[name].page.scene.system, 0.8, 0.5, points=400)

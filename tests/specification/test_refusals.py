@@ -511,11 +511,11 @@ identify none.toml
 identify free-decay.csv
     cannot read a configuration from free-decay.csv: it is a data file; give a RIG.toml that names it under data.file
 identify good.toml
-    cannot identify from a configuration with [grid]: it describes a map; use frictionmap map, or give [data] with kind, one of free-decay, forced, record, sweep
+    cannot identify from a configuration with [grid]: it describes a map; use frictionmap map, or give [data] with kind, one of free-decay, forced, record, sweep, loop
 identify empty.toml
-    the configuration must have a table [data] with kind, one of free-decay, forced, record, sweep; got none
+    the configuration must have a table [data] with kind, one of free-decay, forced, record, sweep, loop; got none
 identify rig.toml --set data.kind=decay
-    data.kind must be one of free-decay, forced, record, sweep; got 'decay' (did you mean free-decay?)
+    data.kind must be one of free-decay, forced, record, sweep, loop; got 'decay' (did you mean free-decay?)
 identify rig.toml --set data.file=none.csv
     cannot read none.csv: No such file or directory; check data.file
 identify rig.toml --set data.file=1

@@ -117,9 +117,9 @@ def check_identifiable(record: Record, fit: DecayFit) -> None:
     words = " and ".join(together)
     if (indices >= len(record.names)).any() and record.sensor is not None:
         raise InputError(
-            f"not identifiable: this record does not tell {words} from the state of the filters at its "
-            f"beginning; omit a filter that is too slow to be seen in it, or hold {together[-1]} in known"
+            f"cannot identify {words}: not identifiable beside the state of the filters at the beginning of "
+            f"this record; omit a filter that is too slow to be seen in it, or hold {together[-1]} in known"
         )
     raise InputError(
-        f"not identifiable: {words} cannot be determined together from this record; hold one of them in known"
+        f"cannot identify {words} together: not identifiable from this record; hold one of them in known"
     )

@@ -7,7 +7,8 @@ contain their true value, the refusals and the warnings. It also compares errors
 errors.
 
 The data are generated without the package: decays in closed form by half cycles, records by
-`references.shaken`, forced responses by half-period propagators or by marching, and sweeps from M, K and C.
+`references.shaken`, forced responses by half-period propagators or by marching, sweeps from M, K and C, and
+forces of dampers by marching their springs.
 """
 
 import os

@@ -53,13 +53,17 @@ def cautions(fit: LoopFit, found: Errors, seen: Channels, named: list[str]) -> l
     named : parameters that are fitted or known
     """
     shown = np.flatnonzero(fit.problem.free[: fit.test.named])
-    words = _misfits(fit, seen, named)
+    asked = missing(fit, named)
+    words = _misfits(seen)
+    if asked:
+        words.append(f"{asked} would explain more of the force: add {asked} to free")
     words += correlation_warnings([fit.test.names[k] for k in shown], found.correlation[np.ix_(shown, shown)])
-    return words + _changes(fit) + _few_samples(fit) + _other_speeds(fit)
+    # a missing parameter may look like a change
+    return words + ([] if asked else _changes(fit)) + _few_samples(fit) + _other_speeds(fit)
 
 
-def _misfits(fit: LoopFit, seen: Channels, named: list[str]) -> list[str]:
-    """What the model leaves, and the parameter that would explain it."""
+def _misfits(seen: Channels) -> list[str]:
+    """What the model leaves of either channel."""
     words = []
     for name, lag, square, larger in zip(_CHANNELS, *seen, strict=True):
         if larger > 1.0 or square > _MISFIT:
@@ -69,9 +73,6 @@ def _misfits(fit: LoopFit, seen: Channels, named: list[str]) -> list[str]:
             )
     if max(seen.inflation) > 1.0:
         words.append(f"standard errors were multiplied by {max(seen.inflation):.3g}")
-    asked = missing(fit, named)
-    if asked:
-        words.append(f"{asked} would explain more of the force: add {asked} to free")
     return words
 
 
@@ -88,7 +89,7 @@ def _changes(fit: LoopFit) -> list[str]:
         if fit.problem.free[place] and abs(change.ratio) > -ndtri(0.25 * CHANCE):
             words.append(
                 f"{fit.test.names[place]} is not constant: in the last third of the test it differs by "
-                f"{100.0 * change.size:+.2g} % from the first third; choose a window"
+                f"{100.0 * change.size:+.2g} % from the first third, choose a window"
             )
     return words
 
@@ -98,7 +99,7 @@ def _few_samples(fit: LoopFit) -> list[str]:
     few = float(np.median(np.bincount(branch, minlength=fit.layout.branches)))
     if few >= _FEW:
         return []
-    return [f"{few:g} samples between two turning points: at least {_FEW} are needed; sample faster"]
+    return [f"{few:g} samples between two turning points: at least {_FEW} are needed"]
 
 
 def _other_speeds(fit: LoopFit) -> list[str]:

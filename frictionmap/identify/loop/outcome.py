@@ -17,6 +17,7 @@ from .problem import (
     ASYMMETRY,
     BACKLASH,
     FRICTION,
+    MASS,
     MU,
     NAMES,
     OFFSET,
@@ -30,6 +31,10 @@ from .verdict import features
 
 #: Singular values of scaled slopes below this share of the largest: not identifiable.
 _CONDITION = 1e-6
+
+#: Correlation of mass and parallel stiffness beyond which the error of each is twenty times that with the
+#: other one known: acceleration and displacement differ by their noise.
+_ALIKE = 0.99875
 
 #: Branches in which the contact must slip.
 _SLIPS = 3
@@ -50,7 +55,7 @@ def without_slip(begin: Begun, held: np.ndarray) -> Outcome:
     """The sum of the stiffnesses, and the least friction: half the range of what the contact carries."""
     fit = stuck_fit(begin, held)
     found = _errors(fit, channels(fit))
-    values = fit.solution.values[: fit.test.named].copy()
+    values = np.where(np.isnan(held), fit.solution.values[: fit.test.named], held)
     total, error = float(values[STIFFNESS]), float(found.standard_error[STIFFNESS])
     u = motion(fit.layout, fit.solution.values[places_of(fit.test).displacement :], fit.test.time)
     beside = 0.0 if np.isnan(held[SPRING]) else float(held[SPRING])
@@ -58,7 +63,7 @@ def without_slip(begin: Begun, held: np.ndarray) -> Outcome:
     sure = not np.isnan(held[SPRING])
     unknown = [k for k in (FRICTION, SPRING, BACKLASH, MU, ASYMMETRY, OFFSET) if np.isnan(held[k])]
     unknown += [k for k in range(len(NAMES), fit.test.named) if np.isnan(held[k])]
-    if sure:
+    if sure and np.isnan(held[STIFFNESS]):
         values[STIFFNESS] = total - beside
         found = _moved(found, STIFFNESS, -beside)
     elif np.isnan(held[STIFFNESS]):
@@ -72,10 +77,10 @@ def without_slip(begin: Begun, held: np.ndarray) -> Outcome:
         "half the range of the force in the contact" + ("" if sure else ", if parallel_stiffness is 0"),
         "N",
     )
-    words = "the contact never slips" + ("" if sure else "; beside a spring of unknown stiffness")
+    words = "the contact never slips" + ("" if sure else ", beside a spring of unknown stiffness")
     return Outcome(fit, found, "no_slip", more | _seen(fit, channels(fit)), [
-        f"{words}: friction cannot be determined; contact_stiffness + parallel_stiffness is {total:.5g} "
-        f"+- {error:.2g} N/mm; increase the amplitude"
+        f"{words}: friction cannot be determined, contact_stiffness + parallel_stiffness is {total:.5g} "
+        f"+- {error:.2g} N/mm (increase the amplitude)"
     ], values)  # fmt: skip
 
 
@@ -92,9 +97,10 @@ def slipping(begin: Begun, held: np.ndarray, named: list[str]) -> Outcome:
     least = least_stiffness(fit) if rigid else None
     if rigid:
         fit = fit._replace(problem=_without(fit, STIFFNESS))
-    _check_identifiable(fit)
+    _check_identifiable(fit, held)
     seen = channels(fit)
     found = _errors(fit, seen)
+    _check_frequencies(fit, found)
     values = fit.solution.values[: fit.test.named].copy()
     words = cautions(fit, found, seen, named)
     if least is not None:
@@ -148,14 +154,30 @@ def _check_slips(fit: LoopFit, held: np.ndarray) -> None:
         )
 
 
-def _check_identifiable(fit: LoopFit) -> None:
-    """Refuse parameters that the samples do not determine separately."""
+def _check_identifiable(fit: LoopFit, held: np.ndarray) -> None:
+    """Refuse parameters on which no sample depends, or several that all samples depend on alike."""
+    unseen = np.isnan(held) & (np.abs(fit.solution.slopes[:, : held.size]).max(axis=0) == 0.0)
+    unseen[MU] = False
+    for k in np.flatnonzero(unseen):
+        raise InputError(
+            f"{fit.test.names[k]} is not identifiable: no sample depends on it; remove it from free"
+        )
     together, deficient = undetermined(fit.problem, fit.solution, _CONDITION)
     names = [fit.test.names[k] for k in together if k < fit.test.named]
     if deficient and names:
         raise InputError(
             f"{' and '.join(names)} are not identifiable: the force of this test depends on them alike; "
             f"hold one of them, known.{names[-1]}"
+        )
+
+
+def _check_frequencies(fit: LoopFit, found: Errors) -> None:
+    """Refuse mass beside a spring at one frequency: there the acceleration is -w^2 u and noise."""
+    alike = float(np.abs(found.correlation[MASS, SPRING]))
+    if fit.problem.free[[MASS, SPRING]].all() and alike > _ALIKE:
+        raise InputError(
+            "parallel_stiffness and mass are not identifiable: at one frequency w only k_p - m w^2 shows; "
+            "hold known.mass, or move the damper at a second frequency as well"
         )
 
 

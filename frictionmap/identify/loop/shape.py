@@ -48,13 +48,14 @@ def _turned(u: np.ndarray, swing: float) -> np.ndarray:
 def shape_fit(time: np.ndarray, moved: np.ndarray, order: int) -> tuple[Layout, Solution]:
     """Branches, straight or as smooth as the information of the samples (BIC) asks for."""
     turned = reversals(time, moved, order)
-    layout, solution = _smooth(time, moved, order, turned)
-    if order == 0:
+    while True:
+        layout, solution = _smooth(time, moved, order, turned)
         noise = float(np.sqrt(solution.sum / (time.size - layout.size)))
         more = _turned(motion(layout, solution.values, time).derivatives[0], _FITTED_NOISES * noise)
-        if more.size > turned.size:
-            return _smooth(time, moved, order, more)
-    return layout, solution
+        # a velocity is known by the sum of its noise: there the samples alone show turning points
+        if order or more.size <= turned.size:
+            return layout, solution
+        turned = more
 
 
 def _smooth(time: np.ndarray, moved: np.ndarray, order: int, turned: np.ndarray) -> tuple[Layout, Solution]:

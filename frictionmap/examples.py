@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .datasets.provenance import value_text
+from .datasets.provenance import to_toml, value_text
 from .files.config import parse
 from .files.template import section_text
 from .identify.chain.estimates import chain_names
@@ -109,6 +109,13 @@ def starting_rig(kind: str) -> tuple[str, str]:
         texts = {key: value_text(value) for key, value in table.items()}
         parts.append(section_text(section, keys, texts, TABLES.get(section, "")))
     return "".join(parts), rig_table(kind)
+
+
+def short_rig(kind: str) -> tuple[str, str]:
+    """A short configuration of a rig, and the table that it reads; it has no title, as `starting_rig`."""
+    tree = parse(_configuration(kind))
+    del tree["title"]
+    return to_toml(tree).lstrip("\n"), rig_table(kind)
 
 
 def rig_table(kind: str, seed: int = 1) -> str:

@@ -36,6 +36,14 @@ __all__ = [
 CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 RIGS = ("free-decay", "forced", "record", "sweep", "loop")
 
+#: Short configurations besides those of a single contact; a test compares them with those that there are.
+_TEMPLATES = {
+    "contacts": "several contacts: a frame with two brace dampers",
+    "elastic": "a contact with a spring",
+    "belt": "a mass on a belt",
+    "design": "one mass, with design questions",
+}
+
 #: Shells that shtab knows; repeated here as the above, and compared by the same test.
 SHELLS = ("bash", "zsh", "tcsh", "fish", "powershell")
 
@@ -302,7 +310,8 @@ def _list_of(number: Callable[[str], float]) -> Callable[[str], list[float]]:
 
 
 def _takes_page(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument("config", metavar="CONFIG.toml", type=Path, help="configuration of the map to explore")
+    text = "configuration of the map to explore (default: one mass against a fixed wall)"
+    sub.add_argument("config", metavar="CONFIG.toml", type=Path, nargs="?", help=text)
     _takes_overrides(sub)
     text = "local port of the page (default: 8712, or any free port)"
     sub.add_argument("--port", metavar="N", type=_port, action=_Once, help=text)
@@ -403,15 +412,22 @@ def _takes_info(sub: argparse.ArgumentParser) -> None:
 
 def _takes_beginnings(command: Callable[[str, str, str], argparse.ArgumentParser]) -> None:
     """Add the commands that help to write configurations and command lines."""
-    text = "Write a commented configuration that explains every key and runs as it stands."
-    sub = command("init", "write a commented configuration", text)
+    text = "Write a short configuration that runs as it stands with every command, in units."
+    sub = command("init", "write a configuration to begin with", text)
     text = "output file (default: map.toml, or rig.toml with --rig, in the current folder)"
     sub.add_argument("config", metavar="NAME.toml", type=_file, nargs="?", help=text)
     which = sub.add_mutually_exclusive_group()
     text = f"kind of contact: {', '.join(CONTACTS)} (default: {CONTACTS[0]})"
     which.add_argument("--contact", choices=CONTACTS, metavar="CONTACT", action=_Once, help=text)
+    for name, words in _TEMPLATES.items():
+        which.add_argument(f"--{name}", dest="template", action="store_const", const=name, help=words)
     text = f"configuration for measured data, with a synthetic data file: {', '.join(RIGS)}"
     which.add_argument("--rig", choices=RIGS, metavar="KIND", action=_Once, help=text)
+    numbers = sub.add_mutually_exclusive_group()
+    text = "numbers in kilograms, newtons and hertz (default, but with --full)"
+    numbers.add_argument("--units", action="store_true", help=text)
+    numbers.add_argument("--ratios", action="store_true", help="dimensionless numbers")
+    sub.add_argument("--full", action="store_true", help="every key, with its meaning and its valid values")
     _takes_replacement(sub)
     text = "Print the JSON Schema of configurations, which editors use to complete and check them."
     sub = command("schema", "JSON schema of configurations, for editors", text)

@@ -242,11 +242,17 @@ def _fill(options: Options, progress: "Progress") -> "Fill":
 
 def _explore(options: Options) -> None:
     """Serve the page until interrupted, or save it as a file."""
+    from ..explorer.presets import PRESETS, preset_scene
     from ..explorer.scene import scene_of
     from ..files.config import load_config
 
-    config = load_config(options.config, options.overrides, lambda *_: None)  # the page has its own grid
-    scene = scene_of(config)
+    if options.config is None:
+        if options.overrides:
+            raise InputError("cannot use --set without CONFIG.toml: it changes a configuration; give one")
+        scene = preset_scene(next(iter(PRESETS)))
+    else:
+        config = load_config(options.config, options.overrides, lambda *_: None)  # the page has its own grid
+        scene = scene_of(config)
     if options.output is not None:
         _export_page(options, scene)
         return
@@ -413,18 +419,24 @@ def _init(options: Options) -> None:
     from ..files.places import claimed
 
     path = options.config or Path("rig.toml" if options.rig else "map.toml")
+    _check_template(options)
     if path.suffix != ".toml":
         raise InputError(f"NAME.toml must end in .toml; got {path}")
     if options.rig:
-        from ..examples import starting_rig
+        from ..examples import short_rig, starting_rig
 
-        text, data = starting_rig(options.rig)
+        text, data = (starting_rig if options.full else short_rig)(options.rig)
         texts = {path: text, path.parent / f"{options.rig}.csv": data}
         then = f"frictionmap identify {path}"
     else:
-        from ..files.template import starting_configuration
+        from ..files.template import short_configuration, starting_configuration
 
-        texts = {path: starting_configuration(path.stem, options.contact or CONTACTS[0])}
+        if options.full:
+            text = starting_configuration(path.stem, options.contact or CONTACTS[0], options.units)
+        else:
+            kind = options.contact or options.template or CONTACTS[0]
+            text = short_configuration(path.stem, kind, not options.ratios)
+        texts = {path: text}
         then = f"frictionmap explore {path}, or frictionmap map {path} && frictionmap plot {path.stem}.nc"
     with contextlib.ExitStack() as places:
         outputs = [
@@ -434,6 +446,17 @@ def _init(options: Options) -> None:
             output.fill(functools.partial(_write, text=text))
     if not options.quiet:
         _print(f"wrote {', '.join(map(str, texts))}; next: {then}")
+
+
+def _check_template(options: Options) -> None:
+    """Refuse options of short configurations of maps with others."""
+    given = [name for name in ("units", "ratios") if options.rig and getattr(options, name)]
+    given += [options.template] if options.full and options.template else []
+    if given:
+        other = "rig" if options.rig else "full"
+        raise InputError(
+            f"cannot use --{given[0]} with --{other}: it is for a short configuration of a map; omit one"
+        )
 
 
 def _write(scratch: Path, text: str) -> None:

@@ -239,7 +239,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
             _SPRINGS,
             words="numbers > 0; the first may be 0",
         ),
-        _chain("masses", "masses of a chain; the first one goes to [units]"),
+        _chain("masses", "masses of a chain; the first one is units.mass"),
         _chain("springs", "springs of a chain; the first one connects mass 1 to the ground"),
         Key(
             "dampers",

@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 import shutil
 import subprocess
 import tomllib
@@ -25,15 +26,17 @@ from frictionmap.command_line.arguments import (
     SHELLS,
     build_parser,
     described,
+    subcommands,
 )
-from frictionmap.command_line.cli import main
+from frictionmap.command_line.cli import _explore, main
 from frictionmap.command_line.completion import completion
 from frictionmap.datasets.labels import CELL_VARIABLES
 from frictionmap.examples import starting_rig
+from frictionmap.explorer.scene import scene_of
 from frictionmap.files.json_schema import map_schema
 from frictionmap.files.key import Key, whole
 from frictionmap.files.keys import GENERAL_KEYS, KEYS
-from frictionmap.files.template import starting_configuration
+from frictionmap.files.template import SHORT, short_configuration, starting_configuration
 from frictionmap.identify.parameters import Parameter
 from frictionmap.identify.rigs.configuration import KINDS, identify, load_rig
 from frictionmap.identify.rigs.keys import rig_keys, rig_schema, rig_settings
@@ -67,10 +70,97 @@ def same(one, other):
 # init
 
 
+#: Options of `init`, and those with which a coarse grid takes seconds.
+TEMPLATES = [
+    *(["--contact", contact] for contact in CONTACTS),
+    ["--contacts"], ["--elastic"], ["--belt"], ["--design"],
+]  # fmt: skip
+COARSE = {"--units": "grid.r.step=12 Hz", "--ratios": "grid.r.step=0.7", "--full": "grid.r.step=0.9"}
+TEMPLATES = [
+    ([*kind, numbers], COARSE[numbers]) for kind in TEMPLATES for numbers in ("--units", "--ratios")
+] + [
+    (["--contact", contact, "--full", *more], COARSE["--full"])
+    for contact in CONTACTS
+    for more in ([], ["--units"])
+]
+
+
+@pytest.mark.parametrize(("options", "coarse"), TEMPLATES, ids=lambda value: str(value).strip("[]"))
+def test_every_template_runs_with_every_command(options, coarse, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", *options, "--quiet"]) == 0
+    text = (tmp_path / "map.toml").read_text(encoding="utf-8")
+    SCHEMA.validate(tomllib.loads(text))
+    assert "--full" in options or len(text.splitlines()) <= 22
+    few = ["--set", coarse, "--set", "grid.beta.num=2", "--quiet"]
+    for command in ("map", "curves", "boundaries", "design"):
+        assert main([command, "map.toml", *few, "-o", f"{command}.nc"]) == 0, capsys.readouterr().err
+        assert main(["plot", f"{command}.nc", "--quiet"]) == 0, capsys.readouterr().err
+        assert main(["info", f"{command}.nc"]) == 0
+    shown = re.search("^# frictionmap response map.toml (.*)$", text, re.MULTILINE)
+    cell = shlex.split(shown[1]) if shown else ["--r", "0.6", "--beta", "0.3"]
+    assert main(["response", "map.toml", *cell, "--quiet"]) == 0, capsys.readouterr().err
+    assert main(["plot", "map-response.nc", "--quiet"]) == 0
+    assert scene_of(load_config("map.toml")).sliders
+
+
+def test_templates_of_the_command_line_are_all_of_them():
+    actions = subcommands(build_parser()).choices["init"]._actions
+    kinds = {one.const for one in actions if one.dest == "template"}
+    assert {*CONTACTS, *kinds} == {*SHORT, "design"}
+
+
+@pytest.mark.parametrize("kind", SHORT)
+def test_units_and_ratios_of_a_template_are_one_system(kind, tmp_path):
+    """500 N/mm and 40 kg are 1: every ratio is exact."""
+    one, other = (loaded(tmp_path, short_configuration("map", kind, numbers)) for numbers in (True, False))
+    assert one.system == other.system
+    np.testing.assert_allclose(one.beta, other.beta, rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--belt", "--full"], "cannot use --belt with --full: it is for a short configuration of a map"),
+        (["--rig", "sweep", "--ratios"], "cannot use --ratios with --rig: it is for a short configuration"),
+    ],
+)  # fmt: skip
+def test_options_that_exclude_each_other(options, message, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", *options]) == 2
+    assert message in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_explore_without_a_file_opens_a_preset(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    shown = []
+    monkeypatch.setattr(
+        "frictionmap.explorer.server.open_server", lambda scene, port: shown.append(scene) or 1 / 0
+    )
+    with pytest.raises(ZeroDivisionError):
+        _explore(build_parser().parse_args(["explore"]))
+    assert shown[0].title == "One mass on a fixed wall"
+    assert main(["explore", "--set", "grid.r=1"]) == 2
+    assert "cannot use --set without CONFIG.toml" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("kind", RIGS)
+def test_a_short_rig_runs_as_it_stands(kind, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "--rig", kind]) == 0
+    text = (tmp_path / "rig.toml").read_text()
+    assert len(text.splitlines()) <= 16
+    RIG_SCHEMA.validate(tomllib.loads(text))
+    assert load_rig("rig.toml")._replace(title="", text="", name="", file="", files=()) == load_rig(
+        ROOT / "configs" / "rigs" / f"{kind}.toml"
+    )._replace(title="", text="", name="", file="", files=())
+
+
 @pytest.mark.parametrize("contact", CONTACTS)
 def test_a_configuration_to_begin_with_runs_as_it_stands(contact, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert main(["init", "--contact", contact]) == 0
+    assert main(["init", "--full", "--contact", contact]) == 0
     told = capsys.readouterr().out
     then = "frictionmap explore map.toml, or frictionmap map map.toml && frictionmap plot map.nc"
     assert told == f"wrote map.toml; next: {then}\n"
@@ -103,7 +193,7 @@ def test_valid_values_stand_above_each_key():
 @pytest.mark.parametrize("kind", RIGS)
 def test_a_rig_to_begin_with_runs_as_it_stands(kind, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert main(["init", "--rig", kind]) == 0
+    assert main(["init", "--full", "--rig", kind]) == 0
     assert sorted(listing(tmp_path)) == sorted(["rig.toml", f"{kind}.csv"])
     committed = ROOT / "configs" / "rigs" / f"{kind}.csv"
     assert (tmp_path / f"{kind}.csv").read_text() == committed.read_text()

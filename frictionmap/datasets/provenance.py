@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..model.contact import WALLS
 from ..model.general import contacts_of
 from ..model.matrices import Matrices
 
@@ -40,6 +41,7 @@ _SYSTEM = {
     "stiffness_scale": 1.0,
     "excitation": "force",
     "damping_reference": "ground",
+    "base_control": "displacement",
 }
 
 
@@ -160,7 +162,7 @@ def _contacts_and_loads(system: "System") -> dict[str, object]:
     else:
         one = _contact_keys(contacts_of(system)[0])
         found["contact_stiffness"] = one.get("stiffness")
-        found["wall_velocity"] = one.get("wall_velocity")
+        found |= {name: one.get(name) for name in WALLS}
         found["normal_load"] = one.get("normal_load")
     if any(getattr(system, name) is not None for name in ("load_harmonics", "load_file", "waveform")):
         numbers = system.dofs.numbers
@@ -179,9 +181,7 @@ def _contacts_and_loads(system: "System") -> dict[str, object]:
 
 def _contact_keys(contact: "Contact") -> dict[str, object]:
     """A contact as an entry of system.contacts, without defaults."""
-    own = {
-        key: getattr(contact, key) for key in ("name", "ratio", "force", "mu", "stiffness", "wall_velocity")
-    }
+    own = {key: getattr(contact, key) for key in ("name", "ratio", "force", "mu", "stiffness", *WALLS)}
     own = {key: list(value) if isinstance(value, tuple) else value for key, value in own.items()}
     normal = [{"n": n, "re": value.real, "im": value.imag} for n, value in contact.nu.items()]
     found = {"kind": contact.kind, "masses": list(contact.masses), **own, "normal_load": normal or None}  # type: ignore[arg-type]

@@ -57,6 +57,8 @@ def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
     Where there is no steady state, the header says why under `none`, and there are no arrays.
     """
     view.check(r)
+    if view.system.varies:
+        view = replace(view, system=view.system.at_frequency(r))
     follower.watch()
     header: dict[str, Any] = {"r": r, "beta": beta, "others": view.engine.compares_starts}
     try:

@@ -99,7 +99,7 @@ def _contacts(system: System, rows: list[int]) -> list[DrawnContact]:
             places(group.vector),
             bool(group.base),
             group.stiffness is not None,
-            float(group.first.wall_velocity),
+            float(group.first.belt),
         )
         for group in groups
     ]

@@ -30,7 +30,7 @@ def _no_slip(meaning: str, dashes: tuple[int, ...]) -> Line:
 
 def _stick(view: View, meaning: str) -> tuple[Line, ...]:
     """The boundary to permanent sticking; none on a belt, which takes the mass along."""
-    if any(one.first.wall_velocity for one in view.contacts):
+    if any(one.first.belt for one in view.contacts):
         return ()
     return (Line(("beta_stick",), "stick", _DASHED, f"at or above: {meaning}"),)
 

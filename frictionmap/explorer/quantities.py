@@ -91,7 +91,7 @@ def looks_of(view: View) -> tuple[Look, ...]:
     """Names and colours of the classes, with that of one-way sliding where there are belts."""
     labels = counted_of(view).labels
     looks = tuple(look._replace(label=label) for look, label in zip(CLASSES, labels, strict=False))
-    if not any(one.first.wall_velocity for one in view.system.contact_system.groups):
+    if not any(one.first.belt for one in view.system.contact_system.groups):
         return looks
     further = (Look(labels[len(CLASSES)], CLASSES[0].colour),) * (ONE_WAY - len(CLASSES))
     return (*looks, *further, Look(ONE_WAY_LABEL, _ONE_WAY))

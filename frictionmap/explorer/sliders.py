@@ -69,6 +69,9 @@ def _contacts(system: System) -> tuple[Slider, ...]:
         if contact.wall_velocity > 0.0:
             label = "wall velocity v / (ωP/k1)" if alone else f"wall velocity{name}"
             found.append(_scaled(f"{key}wall_velocity", label, contact.wall_velocity, "times ωP/k1"))
+        if contact.wall_speed > 0.0:
+            label = "wall speed v / (ω1P/k1)" if alone else f"wall speed{name}"
+            found.append(_scaled(f"{key}wall_speed", label, contact.wall_speed, "times ω1P/k1"))
     return tuple(found)
 
 

@@ -10,6 +10,7 @@ from typing import Any, get_args
 from .. import checks
 from ..datasets.questions import records
 from ..model.contact import CONTACTS, MOST_CONTACTS
+from ..model.general import BASE_CONTROLS
 from ..model.periodic_load import MOST_HARMONICS
 from ..model.settings import (
     BORDERS,
@@ -160,7 +161,20 @@ GENERAL_KEYS = (
         example="3.0",
         words="a number > 0, or a list of them: a bank of elements that share the friction equally",
     ),
-    Key("wall_velocity", "velocity of the wall (a belt) over omega P/k_1", number(), example="0.2"),
+    Key(
+        "wall_velocity",
+        "velocity of the wall (a belt) over omega P/k_1",
+        _or_unit(number(), "wall_velocity"),
+        example="0.2",
+        words="a number, or a velocity with its unit, which is a wall_speed",
+    ),
+    Key(
+        "wall_speed",
+        "instead: speed of the wall that is the same at all r, over omega_1 P/k_1",
+        _or_unit(number(), "wall_speed"),
+        example='"0.2 m/s"',
+        words="a number, or a velocity with its unit",
+    ),
     Key(
         "normal_load",
         "harmonics of the normal load: friction beta nu, nu = 1 + sum of amplitude cos(n tau + phase) >= 0",
@@ -181,14 +195,16 @@ GENERAL_KEYS = (
                     "mu": number(least=1.0),
                     "name": _NAME,
                     "stiffness": _elements("contacts[].stiffness", above=0.0),
-                    "wall_velocity": number(),
+                    "wall_velocity": _or_unit(number(), "contacts[].wall_velocity"),
+                    "wall_speed": _or_unit(number(), "contacts[].wall_speed"),
                     "normal_load": _NORMAL,
                 },
             ),
             maxItems=MOST_CONTACTS,
         ),
         example='[{ kind = "fixed-wall", masses = [1] }, { kind = "between-masses", masses = [1, 2] }]',
-        words="a list of { kind, masses, ratio or force, mu, name, stiffness, wall_velocity, normal_load }; "
+        words="a list of { kind, masses, ratio or force, mu, name, stiffness, wall_velocity or wall_speed, "
+        "normal_load }; "
         "lists of stiffness and ratio or force make a bank of elements",
     ),
 )
@@ -313,6 +329,11 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "damping_reference",
             "damping acts on velocities relative to the ground, or relative to a moving base",
             word(*DAMPING_REFERENCES),
+        ),
+        _system_key(
+            "base_control",
+            "what the moving base holds constant over frequency; its amplitude is Y/r^2 for acceleration",
+            word(*BASE_CONTROLS),
         ),
         *GENERAL_KEYS,
     ),

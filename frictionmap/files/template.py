@@ -83,7 +83,9 @@ SHORT = {
         "One mass and a contact with a spring",
         (*_ONE_MASS, _ZETA, ('contact_stiffness = "500 N/mm"', "contact_stiffness = 1.0")), False, 1.2,
     ),
-    "belt": _Short("A mass on a belt", (*_ONE_MASS, _ZETA, "wall_velocity = 0.5"), False, 1.2),
+    "belt": _Short(
+        "A mass on a belt", (*_ONE_MASS, _ZETA, ('wall_speed = "20 mm/s"', "wall_speed = 0.9")), False, 1.2
+    ),
 }  # fmt: skip
 
 _SHORT_HEAD = """\
@@ -187,7 +189,7 @@ def short_configuration(name: str, kind: str = "fixed-wall", in_units: bool = Tr
         lines += ["[units]\n", f"{_LOADS[short.base]}\n"]
     friction = 100.0 * short.friction if in_units else short.friction
     lines.append(_SHORT_GRIDS[in_units].format(friction=friction))
-    if kind == "belt":  # its contact never holds for good, which would end the search
+    if kind == "belt":  # its contact never holds, which would end the search
         lines.append('beta = ["5 N", "120 N"]\n' if in_units else "beta = [0.05, 1.2]\n")
     if kind == "design":
         lines.append(_QUESTIONS.format(limit='"0.5 mm"' if in_units else "2.5"))

@@ -25,7 +25,7 @@ def has_closed_limits(system: System) -> bool:
     if general.free or general.count > 1 or general.elastic.any() or len(general.orders) > 1:
         return False
     contact = general.groups[0]
-    return not contact.first.wall_velocity and not contact.first.nu and contact.friction(0.0, 1.0)[0] == 0.0
+    return not contact.first.belt and not contact.first.nu and contact.friction(0.0, 1.0)[0] == 0.0
 
 
 def _plain(system: System) -> tuple[System, float]:
@@ -34,7 +34,12 @@ def _plain(system: System) -> tuple[System, float]:
     (order,) = general.orders
     contact = general.groups[0].first
     changed: dict[str, Any] = {name: None for name in (*KEYS, "harmonics")}
-    changed |= {"wall_velocity": 0.0, "contact": contact.kind, "contact_masses": contact.masses}
+    changed |= {
+        "wall_velocity": 0.0,
+        "wall_speed": 0.0,
+        "contact": contact.kind,
+        "contact_masses": contact.masses,
+    }
     if general.base:
         return replace(system, **changed), abs(general.base[order])
     load = tuple(general.forces[order].tolist())

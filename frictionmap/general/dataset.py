@@ -115,7 +115,7 @@ def general_map(
             variables[name] = contact_variable(name, values, general.count)
         else:
             variables[name] = label_variable(name, values)
-    if any(group.first.wall_velocity for group in general.groups):
+    if any(group.first.belt for group in general.groups):
         label = LABELS["regime"]
         full = attributes(label._replace(codes=(*label.codes, *label.also)))
         for name in ("regime", "contact_regime"):

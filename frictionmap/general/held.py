@@ -132,12 +132,12 @@ def belt_limit(system: System, r: np.ndarray) -> np.ndarray:
     NaN where there is no belt, infinite at an undamped resonance.
     """
     general = general_of(system)
-    if general.count > 1 or not general.groups[0].first.wall_velocity:
+    if general.count > 1 or not general.groups[0].first.belt:
         return np.full(r.size, np.nan)
     orders = np.array(orders_of(general), dtype=float)
     speeds = 1j * orders * sliding_phasors(system, r)[:, 0]
     grows = ~np.isfinite(speeds).all(axis=1)
-    sign = np.sign(general.groups[0].first.wall_velocity)
+    sign = np.sign(general.groups[0].first.belt)
     found = largest(orders, sign * np.where(grows[:, np.newaxis], 0.0, speeds))
     return np.where(grows, np.inf, found)
 
@@ -272,7 +272,7 @@ def least_static_friction(system: System, r: np.ndarray) -> np.ndarray:
     for j, group in enumerate(general.groups):
         if group.first.nu:
             found[:, j] = _least_friction(forces, group.first.nu, j, bool(placed[j]))
-        if group.first.wall_velocity:
+        if group.first.belt:
             found[:, j] = np.inf
     zero = _ROUNDING * np.where(np.isfinite(found), found, 0.0).max(axis=1, initial=0.0)
     return np.where(found <= zero[:, np.newaxis], 0.0, found)

@@ -49,7 +49,7 @@ def independent_contacts(w: np.ndarray) -> list[int]:
 def _refuse(general: ContactSystem) -> None:
     """Refuse loops for which forces of one time do not decide."""
     even = [n for n in general.orders if n % 2 == 0]
-    further = any(group.first.nu or group.first.wall_velocity or group.base for group in general.groups)
+    further = any(group.first.nu or group.first.belt or group.base for group in general.groups)
     if even or further or general.elastic.any():
         raise InputError(
             "cannot use",

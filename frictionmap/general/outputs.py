@@ -89,7 +89,7 @@ def _several(general: ContactSystem) -> bool:
 
 
 def _belts(general: ContactSystem) -> bool:
-    return any(group.first.wall_velocity for group in general.groups)
+    return any(group.first.belt for group in general.groups)
 
 
 TABLE = {

@@ -17,7 +17,7 @@ _CYCLES, _TOLERANCE = 500.0, 1e-12
 def has_limits(system: System) -> bool:
     """Whether partial sticking has such a limit: no belt, constant normal loads, walls at rest at tau = 0."""
     general = general_of(system)
-    still = all(not group.first.wall_velocity and not group.first.nu for group in general.groups)
+    still = all(not group.first.belt and not group.first.nu for group in general.groups)
     return still and all(value.imag == 0.0 for value in general.base.values())
 
 

@@ -119,7 +119,7 @@ def is_symmetric(general: ContactSystem) -> bool:
     """Whether x(tau + pi) = -x(tau) is a motion if x is one."""
     loads = (*general.forces, *general.base)
     normal = [n for group in general.groups for n in group.first.nu]
-    belts = any(group.first.wall_velocity for group in general.groups)
+    belts = any(group.first.belt for group in general.groups)
     return all(n % 2 == 1 for n in loads) and all(n % 2 == 0 for n in normal) and not belts
 
 

@@ -13,6 +13,9 @@ from .shown import Shown
 
 CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 
+#: Keys of a wall that moves: over the velocity of the load at its frequency, or at that of r = 1.
+WALLS = ("wall_velocity", "wall_speed")
+
 #: Contacts of a system at most, each element of a bank as one.
 MOST_CONTACTS = 8
 
@@ -42,6 +45,8 @@ class Contact(Shown):
         A list makes a bank of as many elements in parallel (Iwan model).
     wall_velocity : float
         Velocity of the wall over omega P/k_1 [-]; "fixed-wall" only.
+    wall_speed : float
+        Instead: a speed of the wall that is the same at all frequencies, over omega_1 P/k_1 [-].
     normal_load : mapping or sequence, optional
         Harmonics of the normal load: friction beta nu(tau), nu = 1 + Re sum nu_n e^{i n tau} >= 0.  A mapping
         {n: phasor}, or a list of { n, amplitude, phase_deg }.
@@ -61,6 +66,7 @@ class Contact(Shown):
     stiffness: float | Sequence[float] | None = None
     wall_velocity: float = 0.0
     normal_load: Any = None
+    wall_speed: float = 0.0
     nu: Mapping[int, complex] = field(init=False, repr=False, compare=False, default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -80,11 +86,16 @@ class Contact(Shown):
         if self.ratio is None and self.force is None:
             self._set("ratio", 1.0)
         self._check_bank()
-        self._set("wall_velocity", checks.number(self.wall_velocity, "wall_velocity"))
-        if self.wall_velocity and self.kind != "fixed-wall":
+        for name in WALLS:
+            self._set(name, checks.number(getattr(self, name), name))
+            if getattr(self, name) and self.kind != "fixed-wall":
+                raise InputError(
+                    name,
+                    f"must be 0 for {self.kind}, which has no wall of its own; got {getattr(self, name):g}",
+                )
+        if self.wall_velocity and self.wall_speed:
             raise InputError(
-                "wall_velocity",
-                f"must be 0 for {self.kind}, which has no wall of its own; got {self.wall_velocity:g}",
+                "cannot use", "wall_speed", "with wall_velocity: both are the motion of the wall; omit one"
             )
         if self.name is not None and not isinstance(self.name, str):
             raise InputError("name", f"must be text; got {checks.one_line(self.name)}")
@@ -132,6 +143,15 @@ class Contact(Shown):
                 f"must leave 1 + normal_load(tau) >= 0, as contacts that separate are another "
                 f"model; got {1.0 + least:.3g} at its least",
             )
+
+    @property
+    def belt(self) -> float:
+        """Velocity of the wall in either unit; 0 if it is at rest."""
+        return self.wall_velocity or self.wall_speed
+
+    def at_frequency(self, r: float) -> "Contact":
+        """The contact at one frequency ratio, with the wall's velocity over omega P/k_1."""
+        return replace(self, wall_velocity=self.wall_speed / r, wall_speed=0.0) if self.wall_speed else self
 
     @property
     def label(self) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from ..structures.dofs import Dofs
-from .contact import MOST_CONTACTS, Contact, checked_contacts
+from .contact import MOST_CONTACTS, WALLS, Contact, checked_contacts
 from .periodic_load import (
     DEFAULT_HARMONICS,
     ENTRY_KEYS,
@@ -33,9 +33,13 @@ from .periodic_load import (
 
 #: Keys of a system that only this engine takes.
 KEYS = (
-    "contacts", "contact_stiffness", "wall_velocity", "normal_load", "load_harmonics", "load_file",
-    "waveform", "load_offset",
+    "contacts", "contact_stiffness", "wall_velocity", "wall_speed", "normal_load", "load_harmonics",
+    "load_file", "waveform", "load_offset",
 )  # fmt: skip
+
+#: What a moving base holds constant over frequency: its displacement, or its acceleration.
+DISPLACEMENT, ACCELERATION = "displacement", "acceleration"
+BASE_CONTROLS = (DISPLACEMENT, ACCELERATION)
 
 #: Rows of W are linearly dependent if a combination of them is smaller than this per mass: above rounding,
 #: and below any difference that is meant.
@@ -71,6 +75,12 @@ class Definition(Protocol):
 
     @property
     def wall_velocity(self) -> float: ...
+
+    @property
+    def wall_speed(self) -> float: ...
+
+    @property
+    def base_control(self) -> str: ...
 
     @property
     def normal_load(self) -> Any: ...
@@ -185,8 +195,9 @@ class ContactSystem:
 
 def uses_general(system: Definition) -> bool:
     """Whether a system needs the general engine."""
-    given = (getattr(system, name) for name in KEYS if name != "wall_velocity")
-    return any(one is not None for one in given) or system.wall_velocity != 0.0
+    given = (getattr(system, name) for name in KEYS if name not in WALLS)
+    moved = system.wall_velocity != 0.0 or system.wall_speed != 0.0
+    return moved or system.base_control != DISPLACEMENT or any(one is not None for one in given)
 
 
 def contact_system(system: Definition) -> ContactSystem:
@@ -206,7 +217,7 @@ def contact_system(system: Definition) -> ContactSystem:
         groups, forces, base, offset, _describe_loop(groups), free=getattr(system, "rigid_modes", 0) > 0
     )
     if not found.forces and not found.base:
-        if not any(group.first.wall_velocity for group in groups):
+        if not any(group.first.belt for group in groups):
             raise InputError("load_harmonics", "must have a harmonic that is not zero; got none")
         raise InputError(
             "cannot compute without a load: a belt alone makes vibrations of a period of their own; "
@@ -226,7 +237,7 @@ def refuse_general(system: Definition, what: str) -> None:
                 f"cannot {what} of a free structure: this is offered where springs hold it at a place; add a "
                 f"spring to the ground, such as 1e-6 of the others"
             )
-        used = [name for name in KEYS if getattr(system, name) not in (None, 0.0)]
+        used = [name for name in KEYS if getattr(system, name) not in (None, 0.0)] or ["base_control"]
         raise InputError(
             f"cannot {what} of a system with {used[0]}: this is offered for one rigid contact under one "
             f"harmonic load; omit {used[0]}"
@@ -239,7 +250,7 @@ def contacts_of(system: Definition) -> tuple[Contact, ...]:
         return system.contacts
     own = {
         "stiffness": system.contact_stiffness, "wall_velocity": system.wall_velocity,
-        "normal_load": system.normal_load,
+        "wall_speed": system.wall_speed, "normal_load": system.normal_load,
     }  # fmt: skip
     return (Contact(system.contact, system.contact_masses, **own),)
 
@@ -256,7 +267,7 @@ def check_contacts(system: Definition) -> tuple[Contact, ...] | None:
     if system.contacts is None:
         return None
     for name, default in (
-        ("contact_stiffness", None), ("wall_velocity", 0.0), ("normal_load", None),
+        ("contact_stiffness", None), ("wall_velocity", 0.0), ("wall_speed", 0.0), ("normal_load", None),
     ):  # fmt: skip
         if getattr(system, name) != default:
             raise InputError("cannot use", name, "with contacts: each contact has its own; omit one")
@@ -317,7 +328,8 @@ def _groups(system: Definition) -> tuple[MergedContact, ...]:
             same = np.array_equal(other.vector, vector) and other.base == base
             if not same or contact.stiffness is not None or other.first.stiffness is not None:
                 continue
-            if contact.wall_velocity != other.first.wall_velocity or contact.nu != other.first.nu:
+            walls = any(getattr(contact, name) != getattr(other.first, name) for name in WALLS)
+            if walls or contact.nu != other.first.nu:
                 raise InputError(
                     name,
                     f"must have the wall_velocity and the normal_load of {other.name}, with which it "
@@ -513,6 +525,8 @@ def _describe_group(group: MergedContact, dofs: Dofs) -> str:
         more.append(f"contact stiffness {one.stiffness:g}")
     if one.wall_velocity:
         more.append(f"wall velocity {one.wall_velocity:g}")
+    if one.wall_speed:
+        more.append(f"wall speed {one.wall_speed:g}")
     if one.nu:
         more.append("varying normal load")
     if len(group.members) > 1:

@@ -145,9 +145,9 @@ def check_free(system: Free, modes: ModalModel) -> None:
             f"must be force where neither spring nor contact ends at the base ({what}); got 'base'; use "
             f"joined-base-wall for friction on the base",
         )
-    belts = np.array([bool(group.first.wall_velocity) for group in general.groups])
+    belts = np.array([bool(group.first.belt) for group in general.groups])
     if (belts & is_carried(system, modes)).any():
-        worst = next(group.first.wall_velocity for group in general.groups if group.first.wall_velocity)
+        worst = next(group.first.belt for group in general.groups if group.first.belt)
         raise InputError(
             "wall_velocity",
             f"must be 0 at a contact that takes the structure along, where the wall seen from the belt is at "

@@ -3,7 +3,7 @@
 import math
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
@@ -20,6 +20,9 @@ from .contact import CONTACTS, Contact, numbers
 from .coupled_modes import CoupledModel, coupled_model
 from .decoupling import Decoupling
 from .general import (
+    ACCELERATION,
+    BASE_CONTROLS,
+    DISPLACEMENT,
     ContactSystem,
     base_is_meant,
     check_contacts,
@@ -213,6 +216,11 @@ class System(Shown):
         a bank of elements in parallel, as in `Contact`.
     wall_velocity : float
         Velocity of a fixed wall over omega P/k_1 [-], as of a belt.
+    wall_speed : float
+        Instead: a speed of the wall that is the same at all frequencies, over omega_1 P/k_1 [-].
+    base_control : {"displacement", "acceleration"}
+        What the moving base holds constant over frequency.  With "acceleration" its amplitude is Y/r^2, and
+        P = k_1 Y belongs to r = 1: it is m_1 times the acceleration, for a chain.
     normal_load : mapping or sequence of mapping, optional
         Harmonics of the normal load, as in `Contact`.
     load_harmonics : mapping, sequence of mapping, or PeriodicLoad, optional
@@ -258,6 +266,8 @@ class System(Shown):
     contacts: Sequence[Contact | Mapping[str, Any]] | None = None
     contact_stiffness: float | Sequence[float] | None = None
     wall_velocity: float = 0.0
+    wall_speed: float = 0.0
+    base_control: Literal["displacement", "acceleration"] = "displacement"
     normal_load: Any = None
     load_harmonics: Mapping[int, Any] | Sequence[Mapping[str, Any]] | PeriodicLoad | None = None
     load_file: str | os.PathLike | None = None
@@ -435,6 +445,11 @@ class System(Shown):
             self._set("excitation", "base" if self.base_motion or base_is_meant(self) else "force")
         checks.choice(self.excitation, "excitation", EXCITATIONS)
         checks.choice(self.damping_reference, "damping_reference", DAMPING_REFERENCES)
+        checks.choice(self.base_control, "base_control", BASE_CONTROLS)
+        if self.base_control != DISPLACEMENT and self.excitation != "base":
+            raise InputError(
+                "base_control", "must be displacement without base excitation; got 'acceleration'"
+            )
         if self.base_motion and self.excitation != "base":
             raise InputError(
                 "excitation",
@@ -480,6 +495,27 @@ class System(Shown):
         if isinstance(self.matrices, Matrices):
             return self.matrices.rigid_modes
         return int(self.matrices is None and self.stiffness_ratios[0] == 0.0)  # type: ignore[index]
+
+    @property
+    def varies(self) -> bool:
+        """Whether the dimensionless system changes with r: a wall of constant speed, a shaker of constant
+        acceleration.
+        """
+        groups = self._contact_system.groups
+        return self.base_control != DISPLACEMENT or any(group.first.wall_speed for group in groups)
+
+    def at_frequency(self, r: float) -> "System":
+        """The system at one frequency ratio > 0, over the same P and k_1."""
+        changed: dict[str, Any] = {"base_control": DISPLACEMENT}
+        if self.contacts is not None:
+            changed["contacts"] = tuple(one.at_frequency(r) for one in self.contacts)  # type: ignore[union-attr]
+        elif self.wall_speed:
+            changed |= {"wall_velocity": self.wall_speed / r, "wall_speed": 0.0}
+        if self.base_control == ACCELERATION:
+            changed |= dict.fromkeys(("load_file", "waveform", "harmonics"))
+            base = self._contact_system.base
+            changed["load_harmonics"] = {n: u / (r * r) for n, u in base.items()}
+        return replace(self, **changed)
 
     @property
     def n(self) -> int:

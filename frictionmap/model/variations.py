@@ -24,6 +24,7 @@ NUMBERS = {
     "stiffness_scale": "stiffness that displacements are over, in the units of K",
     "contact_stiffness": "contact stiffness over k_1",
     "wall_velocity": "velocity of the wall over omega P/k_1",
+    "wall_speed": "speed of the wall over omega_1 P/k_1",
 }
 LISTS = {
     "mass_ratios": "mass ratio m_{0}/m_1",
@@ -52,6 +53,7 @@ CONTACT_NUMBERS = {
     "mu": "static-to-kinetic ratio of contact {0}",
     "stiffness": "stiffness of contact {0}, over k_1",
     "wall_velocity": "wall velocity of contact {0}, over omega P/k_1",
+    "wall_speed": "wall speed of contact {0}, over omega_1 P/k_1",
 }
 _OF_CONTACT = re.compile(r"contacts\[([1-9][0-9]*)\]\.([a-z_]+)")
 

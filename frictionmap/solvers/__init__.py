@@ -5,6 +5,7 @@ module           what is in it
 ===============  ======================================================================
 interface        what an engine answers
 general          the engine of any number of contacts, springs, belts and periodic loads
+varying          the engine of systems that change with r: belts and shakers in physical units
 single           the engine of one rigid contact under one harmonic load
 choose           the engine of a system
 ===============  ======================================================================

@@ -22,6 +22,10 @@ def engine_of(system: System) -> Engine:
         from .single import SingleEngine
 
         return SingleEngine(system)
+    if system.varies:
+        from .varying import VaryingEngine
+
+        return VaryingEngine(system)
     from .general import GeneralEngine
 
     return GeneralEngine(system)

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from .. import checks
 from ..errors import InputError
+from ..model.general import ACCELERATION
 from ..model.system import System
 from .axes import grid_ratios, has_units, needs
 from .quantities import EXAMPLES, Quantity, is_foreign, quantities, quantity
@@ -37,8 +38,12 @@ DIMENSIONS = {
     "load_harmonics[].im": "force",
     "load_offset": "force",
     "contact_stiffness": "stiffness",
+    "wall_velocity": "velocity",
+    "wall_speed": "velocity",
     "contacts[].force": "force",
     "contacts[].stiffness": "stiffness",
+    "contacts[].wall_velocity": "velocity",
+    "contacts[].wall_speed": "velocity",
 }
 
 #: Keys of [design] with a dimension; the limit of a transmitted force is a force.
@@ -146,9 +151,11 @@ def in_ratios(
     InputError
         A number has no unit of its kind, or a reference value is missing: all of them are named.
     """
+    if units is not None and units.constant_acceleration:
+        table = {"base_control": ACCELERATION, **table}
     if not any(has_units(value) for value in table.values()):
         return dict(table)
-    plain = _plain_matrix_numbers(table, units, name)
+    plain = _with_speeds(_plain_matrix_numbers(table, units, name))
     given: list[Wanted] = []
 
     def note(value: Any, place: _Place) -> None:
@@ -161,6 +168,17 @@ def in_ratios(
     scales = NO_SCALES if units is None else reference_scales(units, _Model(plain))
     scales.require([*wanted, *given])
     return dict(_changed(plain, "", name, lambda value, place: _ratio(value, place, scales)))
+
+
+def _with_speeds(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Wall velocities with units are speeds that are the same at all frequencies."""
+    found = dict(table)
+    if has_units(found.get("wall_velocity")) and "wall_speed" not in found:
+        found["wall_speed"] = found.pop("wall_velocity")
+    contacts = found.get("contacts")
+    if isinstance(contacts, (list, tuple)):
+        found["contacts"] = [_with_speeds(one) if isinstance(one, Mapping) else one for one in contacts]
+    return found
 
 
 def _is_several(value: Any) -> bool:
@@ -282,6 +300,9 @@ def axes_in_ratios(axes: Any, scales: Scales) -> Any:
                 _axis_key(str(key))[1]: _axis_ratios(column, str(key), f"axes.{name}.{key}", scales)
                 for key, column in values.items()
             }
+        elif axis_kind(str(name)) == "velocity" and has_units(values):
+            speed = str(name).replace("wall_velocity", "wall_speed")
+            found[speed] = _axis_ratios(values, speed, f"axes.{name}", scales)
         else:
             found[_axis_key(str(name))[1]] = _axis_ratios(values, str(name), f"axes.{name}", scales)
     return found

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, Protocol
 
 from .. import checks
 from ..errors import InputError
+from ..model.general import ACCELERATION
 from ..model.html import as_table
 from ..model.shown import Shown
 from ..model.system import System
@@ -49,7 +50,7 @@ _NEEDS = (
     (
         "base_acceleration",
         "acceleration_frequency",
-        "the base amplitude Y = a/omega^2, equal at all frequencies, needs the frequency of a",
+        "Y = a/omega^2 needs its frequency, or natural_frequency where a is the same at all frequencies",
     ),
     ("acceleration_frequency", "base_acceleration", "it is the frequency of that acceleration"),
 )
@@ -86,7 +87,8 @@ class Units(Shown):
         Instead of the load: amplitude Y of the base; it must move.  mm, m, um, in.
     base_acceleration, acceleration_frequency : str, optional
         Instead of the load: the acceleration of the base (m/s^2, or g = 9.80665 m/s^2) at one frequency.
-        Y = a/omega^2 is the same at all others.
+        Y = a/omega^2 is the same at all others.  Without the frequency, with base_control = "acceleration" of
+        `System`, the acceleration is the same at all frequencies.
     stiffness : str, optional
         k_1 of a chain, stiffness_scale of matrices.  N/m, N/mm, kN/m, kN/mm, lbf/in.  "model": matrices are
         in SI units, and so is their stiffness_scale, in N/m.
@@ -139,7 +141,7 @@ class Units(Shown):
                 "stiffness; give one of the two",
             )
         for name, needed, why in _NEEDS:
-            if name in given and needed not in given:
+            if name in given and needed not in given and not self.constant_acceleration:
                 raise InputError("cannot use", name, f"without {needed}: {why}; give both")
         for name in given:
             self._check(name)
@@ -153,6 +155,14 @@ class Units(Shown):
         if found.value <= 0:
             raise InputError(name, f"must be > 0; got {checks.one_line(value)}")
         object.__setattr__(self, name, found.text)
+
+    @property
+    def constant_acceleration(self) -> bool:
+        """Whether the acceleration of the base is the same at all frequencies."""
+        if self.base_acceleration is None or self.acceleration_frequency is not None:
+            return False
+        pair = self.mass is not None and self.stiffness is not None
+        return self.natural_frequency is not None or pair
 
     def value(self, name: str) -> Fraction | None:
         """Value in SI units, Hz for a frequency; None if not given or taken from the model."""
@@ -338,7 +348,7 @@ def reference_scales(units: Units, system: Reference) -> Scales:
         stiffness = mass * (2 * PI * frequency) ** 2
     elif mass is not None and stiffness is not None:
         frequency = _root(stiffness / mass) / (2 * PI)
-    force, length = units.value("load"), _base_amplitude(units)
+    force, length = units.value("load"), _base_amplitude(units, frequency)
     if stiffness is not None:
         force, length = (
             length * stiffness if force is None and length is not None else force,
@@ -372,6 +382,15 @@ def _check_system(units: Units, system: System) -> None:
                 f"units.{name}",
                 ": it needs base excitation; for a force-excited system use units.load",
             )
+    constant = system.base_control == ACCELERATION
+    if units.base_acceleration is not None and units.constant_acceleration != constant:
+        remedy = "omit acceleration_frequency" if constant else "use base_control = 'acceleration'"
+        raise InputError(
+            "cannot use",
+            "units.base_acceleration",
+            f"with base_control = {system.base_control!r}: it is the acceleration at one frequency with "
+            f"acceleration_frequency, and at all frequencies without; {remedy}",
+        )
     if units.mass is not None and system.matrices is not None:
         raise InputError(
             "cannot use",
@@ -431,8 +450,10 @@ def _stiffness(units: Units, system: Reference) -> Fraction | None:
     return Fraction(system.stiffness_scale) if units.stiffness == OF_MODEL else units.value("stiffness")
 
 
-def _base_amplitude(units: Units) -> Fraction | None:
-    acceleration, frequency = units.value("base_acceleration"), units.value("acceleration_frequency")
-    if acceleration is not None and frequency is not None:
-        return acceleration / (2 * PI * frequency) ** 2
-    return units.value("base_amplitude")
+def _base_amplitude(units: Units, at_one: Fraction | None) -> Fraction | None:
+    """Y; of a constant acceleration that at r = 1."""
+    acceleration = units.value("base_acceleration")
+    if acceleration is None:
+        return units.value("base_amplitude")
+    frequency = at_one if units.constant_acceleration else units.value("acceleration_frequency")
+    return None if frequency is None else acceleration / (2 * PI * frequency) ** 2

@@ -31,6 +31,8 @@ CASES = {
     "dampers": ('dampers = ["300 N s/m"]\n' + UNITS + ONE, "dampers", (300 / math.sqrt(500e3 * 40),)),
     "load": ('load = ["50 N"]\n' + UNITS + ONE, "load", (0.5,)),
     "load_offset": ('load_offset = ["-0.05 kN"]\n' + UNITS + ONE, "load_offset", [-0.5]),
+    "wall_velocity": ('wall_velocity = "0.2 m/s"\n' + UNITS + ONE, "wall_speed", 0.2 * 500e3 / (100 * OMEGA)),
+    "wall_speed": ('wall_speed = "0.2 m/s"\n' + UNITS + ONE, "wall_speed", 0.2 * 500e3 / (100 * OMEGA)),
     "contact_stiffness": ('contact_stiffness = "800 N/mm"\n' + UNITS + ONE, "contact_stiffness", 1.6),
     "frequency_scale": (MATRICES + 'frequency_scale = "3 Hz"\n' + MODEL + ONE, "omega_1", 6 * math.pi),
     "stiffness_scale": (MATRICES + 'stiffness_scale = "1 N/mm"\n' + MODEL + ONE, "stiffness_scale", 1000.0),
@@ -53,6 +55,12 @@ IN_TABLES = {
         'load_harmonics = [{ n = 1, mass = 1, im = "80 N" }]\n' + UNITS, first_harmonic, 0.8j),
     "contacts[].force": (
         'contacts = [{ force = "50 N" }]\n' + UNITS, lambda s: s.contacts[0].force, 0.5),
+    "contacts[].wall_velocity": (
+        'contacts = [{ wall_velocity = "200 mm/s" }]\n' + UNITS, lambda s: s.contacts[0].wall_speed,
+        0.2 * 500e3 / (100 * OMEGA)),
+    "contacts[].wall_speed": (
+        'contacts = [{ wall_speed = "200 mm/s" }]\n' + UNITS, lambda s: s.contacts[0].wall_speed,
+        0.2 * 500e3 / (100 * OMEGA)),
     "contacts[].stiffness": (
         'contacts = [{ stiffness = "1 kN/mm" }]\n' + UNITS, lambda s: s.contacts[0].stiffness, 2.0),
 }  # fmt: skip
@@ -105,7 +113,6 @@ DIMENSIONLESS = {
     "system.load_harmonics[].n", "system.load_harmonics[].mass", "system.load_harmonics[].phase_deg",
     *(f"system.{place}normal_load[].{name}" for place in ("", "contacts[].")
       for name in ("n", "amplitude", "phase_deg", "re", "im")),
-    "system.wall_velocity", "system.contacts[].wall_velocity",  # speeds over omega P/k1, which changes with r
     *(f"system.contacts[].{name}" for name in ("masses[]", "ratio", "ratio[]", "mu")),
     "grid.mu", "grid.friction_coefficient",
     "solver.cycles", "solver.tolerance", "solver.steps", "curves.harmonics",

@@ -53,7 +53,7 @@ map good.toml --set titel=x
 map good.toml --set title=1
     title must be text; got 1
 map good.toml --set system.contct=fixed-wall
-    unknown key 'system.contct' (did you mean contact?); valid: contact, contact_masses, load_mass, load, mass_ratios, stiffness_ratios, masses, springs, dampers, damping_ratios, matrices, reduce, rayleigh, decouple, frequency_scale, stiffness_scale, excitation, damping_reference, load_harmonics, load_file, waveform, harmonics, load_offset, contact_stiffness, wall_velocity, normal_load, contacts
+    unknown key 'system.contct' (did you mean contact?); valid: contact, contact_masses, load_mass, load, mass_ratios, stiffness_ratios, masses, springs, dampers, damping_ratios, matrices, reduce, rayleigh, decouple, frequency_scale, stiffness_scale, excitation, damping_reference, base_control, load_harmonics, load_file, waveform, harmonics, load_offset, contact_stiffness, wall_velocity, wall_speed, normal_load, contacts
 map good.toml --set solver.step=9
     unknown key 'solver.step' (did you mean steps?); valid: start, cycles, tolerance, steps, skip, steady, outputs
 map good.toml --set grid.r.stepp=1
@@ -105,7 +105,7 @@ map good.toml --set 'units={load="1 N",base_amplitude="1 mm"}'
 map good.toml --set 'units={mass="1 kg"}'
     cannot use units.mass alone: it gives k1 = m1 omega_1^2 with natural_frequency, and this frequency with stiffness; give one of the two
 map good.toml --set 'units={base_acceleration="0.5 g"}'
-    cannot use units.base_acceleration without acceleration_frequency: the base amplitude Y = a/omega^2, equal at all frequencies, needs the frequency of a; give both
+    cannot use units.base_acceleration without acceleration_frequency: Y = a/omega^2 needs its frequency, or natural_frequency where a is the same at all frequencies; give both
 map good.toml --set 'units.base_amplitude="1 mm"'
     cannot use units.base_amplitude: it needs base excitation; for a force-excited system use units.load
 map good.toml --set 'units.stiffness=model'
@@ -123,7 +123,7 @@ map good.toml --set solver.outputs=[]
 map good.toml --set 'solver.outputs=["regim"]'
     solver.outputs must be one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, beta_lim_modal, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, least_slip, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall, mean_velocity, release_order; got 'regim' (did you mean regime?)
 map good.toml --set 'axes.damping_ratio=[0,0.1]'
-    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], dampers[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity; got 'damping_ratio' (did you mean damping_ratios?)
+    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, wall_speed, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], dampers[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity, contacts[i].wall_speed; got 'damping_ratio' (did you mean damping_ratios?)
 map good.toml --set 'axes={"mass_ratios[2]"=[1,2]}'
     axes, at mass_ratios_2 = 1: cannot use axis mass_ratios[2]: the system has 1 mass; use an index <= 1
 map good.toml --set 'axes={damping_ratios=[]}'
@@ -709,7 +709,7 @@ fm.sweep(ONE, [1.0], [0.5], step=9)
 fm.sweep(ONE, [1.0], [0.5], threads=0)
     threads must be >= 1; got 0
 fm.sweep(ONE, [1.0], [0.5], axes={"zeta": [0.1]})
-    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], dampers[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity; got 'zeta'
+    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, wall_speed, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], dampers[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity, contacts[i].wall_speed; got 'zeta'
 fm.sweep(ONE, [1.0], [0.5], axes={"damping_ratios": [-0.1, 0.1]})
     axes, at damping_ratios = -0.1: damping_ratios must be >= 0; got -0.1
 fm.sweep(ONE, [1.0], [0.5], axes={"regime": {"load_mass": [1]}})

@@ -341,6 +341,24 @@ GENERAL_VARIABLES = {
     "peak_to_peak": _range_label("range of the displacement of each mass, over P/k1 (Y)", "dof", least=0.0),
     "midpoint": _range_label("middle of the range of the displacement of each mass, over P/k1 (Y)", "dof"),
     "work_wall": _range_label("work of the moving wall", comment=_PER_CYCLE),
+    "drift": _range_label(
+        "amplitude of the drift of the storey below each mass, over P/k1 (Y)",
+        "dof",
+        comment="half the range of the displacement of a mass beside the one before it, of the first beside "
+        "the base",
+        least=0.0,
+    ),
+    "acceleration_amplitude": _range_label(
+        "amplitude of the acceleration of each mass, over omega_1^2 P/k1 (Y)",
+        "dof",
+        comment="largest modulus; with a moving base the absolute acceleration",
+        least=0.0,
+    ),
+    "base_force": _range_label(
+        "largest modulus of the force on the base, and on walls beside it, over P",
+        comment="sum of the loads less the inertia of the masses",
+        least=0.0,
+    ),
     "mean_velocity": _range_label(
         "mean velocity in the contact, of a structure that no spring holds at a place",
         comment="dz/dtau over P/k1 (Y): at one that is not 0 the structure drifts, and amplitudes are NaN",
@@ -356,7 +374,9 @@ GENERAL_VARIABLES = {
 }
 
 #: Of these, the ones that are not of single contacts.
-_OF_ALL_CONTACTS = ("peak_to_peak", "midpoint", "release_order")
+_OF_ALL_CONTACTS = (
+    "peak_to_peak", "midpoint", "release_order", "drift", "acceleration_amplitude", "base_force",
+)  # fmt: skip
 
 #: Variables of all maps that have one value per contact where there are several.
 PER_CONTACT = (
@@ -755,11 +775,13 @@ MEASURES = {
         "first_harmonic_amplitude", "displacement_harmonic", "contact_harmonic", "rms", "held_response",
         "limit_amplitude", "limit_first_harmonic_amplitude", "x", "z", "event_z", "contact_peak_to_peak",
         "contact_midpoint", "peak_to_peak", "midpoint", "least_slip",
+        "drift",
     ),
     "force": (
         "beta_lim", "beta_lim_modal", "beta_stick", "sliding_limit", "beta_lim_high", "beta_stick_high",
         "peak_threshold", "friction_harmonic", "transmitted_force", "transmitted_first_harmonic", "friction",
         "beta_stick_contact", "beta_noslip", "no_stop_begin", "no_stop_end", "border_beta",
+        "base_force",
     ),
     "work": ("work_friction", "work_input", "work_damping", "work_wall"),
     "frequency": (
@@ -767,6 +789,7 @@ MEASURES = {
         "invariant_first_harmonic", "contact_invariant_first_harmonic",
     ),
     "velocity": ("v",),
+    "acceleration": ("acceleration_amplitude",),
     "time": ("event_tau",),
 }  # fmt: skip
 
@@ -776,7 +799,8 @@ MEASURE_OF = {name: measure for measure, names in MEASURES.items() for name in n
 #: SI units as written in CF conventions, and the suffixes of variables in these units.
 SI = {
     "length": ("m", "m"), "force": ("N", "N"), "work": ("J", "J"), "frequency": ("Hz", "Hz"),
-    "velocity": ("m s-1", "m_s"), "time": ("s", "s"),
+    "velocity": ("m s-1", "m_s"),
+    "acceleration": ("m s-2", "m_s2"), "time": ("s", "s"),
 }  # fmt: skip
 
 #: Global attributes with the reference values that convert ratios, by measure.
@@ -790,7 +814,7 @@ def in_si(name: str, measure: str) -> str:
 
 def _si_label(label: Label, measure: str) -> Label:
     """Label of a variable in its SI unit."""
-    name = re.sub(r", (over P.*|dx/dtau.*|in units of r)$", "", label.long_name)
+    name = re.sub(r", (over P.*|over omega_1.*|dx/dtau.*|in units of r)$", "", label.long_name)
     name = name.replace("frequency ratios", "frequencies").replace("excitation phase at", "time at")
     what = ", kinetic friction force" if measure == "force" and "over" not in label.long_name else ""
     return label._replace(long_name=f"{name}{what}", comment="", units=SI[measure][0], unresolved=np.nan)

@@ -74,6 +74,8 @@ def ones_of(ds: xr.Dataset) -> dict[str, float]:
     ones = {measure: float(ds.attrs[name]) for measure, name in SCALES.items() if name in ds.attrs}
     if "force" in ones and "length" in ones:
         ones["work"] = ones["force"] * ones["length"]
+    if "frequency" in ones and "length" in ones:
+        ones["acceleration"] = ones["length"] * (2.0 * math.pi * ones["frequency"]) ** 2
     if "frequency" in ones and "r" in ds.coords and ds["r"].ndim == 0:
         omega = 2.0 * math.pi * float(ds.coords["frequency"])
         ones["time"] = 1.0 / omega

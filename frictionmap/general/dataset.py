@@ -15,6 +15,7 @@ from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import Boundaries, find_boundaries
 from .maps import solve_cells
+from .observed import wants_further
 from .outputs import COUNTERPARTS, TABLE, depends_on_places, is_of_masses, is_wanted, output_values
 from .problem import general_of
 
@@ -92,11 +93,13 @@ def cell_arrays(
 ) -> tuple[dict[str, np.ndarray], Boundaries]:  # fmt: skip
     """Outputs over the axes mu, r and beta, those of contacts (n_mu, n_r, n_beta, N), and the boundaries."""
     general = general_of(system)
-    masses = any(is_of_masses(name) for name in names)
+    masses, further = any(is_of_masses(name) for name in names), wants_further(system, names)
     placed = any(depends_on_places(name, general) for name in names)
     threads = checks.threads(threads)
     limits = find_boundaries(system, axes["r"], axes["mu"], threads, watch)
-    cells = solve_cells(system, axes, limits.beta_stick, solver, threads, progress, watch, masses, placed)
+    cells = solve_cells(
+        system, axes, limits.beta_stick, solver, threads, progress, watch, masses, placed, further
+    )
     return {name: output_values(name, system, cells) for name in names}, limits
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from ..errors import InputError
 from ..model.general import ContactSystem
 from ..model.system import System
+from .observed import observed_phasors
 from .problem import general_of, is_symmetric, refuse_loop, springs
 
 #: Samples per period of the highest harmonic where extremes are looked for, and steps that refine them.
@@ -92,22 +93,23 @@ def held_forces_of(
     return forces, motions
 
 
-def held_ranges(system: System, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def held_ranges(system: System, r: np.ndarray, further: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest displacements in the contacts, then of the masses, (n_r, N + n), all held.
 
-    Infinite at a resonance; 0 in rigid contacts.
+    Infinite at a resonance; 0 in rigid contacts.  With `further` also what else is observed, see `observed`.
     """
     general = general_of(system)
     _, motions = held_forces(system, r)
     orders = np.array(list(motions), dtype=float)
     x = np.stack(list(motions.values()), axis=-1)  # (n_r, n, H)
+    more = [observed_phasors(system, n, r, one) for n, one in motions.items()] if further else []
     z = np.einsum("jn,rnh->rjh", general.vectors, x)
     for j, group in enumerate(general.groups):
         if group.base:
             z[:, j] -= np.array([general.base.get(int(n), 0.0) for n in orders])
         if group.stiffness is None:
             z[:, j] = 0.0
-    both = np.concatenate((z, x), axis=1)
+    both = np.concatenate((z, x, np.stack(more, axis=-1)) if further else (z, x), axis=1)
     finite = np.isfinite(both).all(axis=-1)
     both = np.where(finite[..., np.newaxis], both, 0.0)
     high, low = largest(orders, both), -largest(orders, -both)

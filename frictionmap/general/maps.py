@@ -12,6 +12,7 @@ from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines
 from .held import held_ranges
+from .observed import observed_rows
 from .outputs import allocate
 from .problem import general_of, problem_of, static_offset
 from .starts import initial_states
@@ -33,10 +34,10 @@ def _put_r_zero(found: Cells, at_zero: int, beta: np.ndarray, stick: np.ndarray)
 
 def _put_stuck(system: System, r: np.ndarray, found: Cells) -> None:
     """Add the displacements of the held structure in cells that closed forms prove to stick."""
-    low, high = held_ranges(system, r)
+    kept = found.lowest.shape[-1]  # contacts, and masses and more where they are wanted
+    low, high = held_ranges(system, r, kept > general_of(system).count + system.n)
     stuck = (found.regime == regimes.PERMANENT_STICKING) & (found.origin == regimes.CLOSED_FORM)
     m, i, b = np.nonzero(stuck)
-    kept = found.lowest.shape[-1]  # contacts, and masses where they are wanted
     found.highest[m, i, b] += high[i, :kept]
     found.lowest[m, i, b] += low[i, :kept]
 
@@ -44,6 +45,7 @@ def _put_stuck(system: System, r: np.ndarray, found: Cells) -> None:
 def solve_cells(
     system: System, axes: Mapping[str, np.ndarray], beta_stick: np.ndarray, solver: Solver, threads: int,
     progress: Progress | None, watch: Watch | None, masses: bool, places: bool = True,
+    further: bool = False,
 ) -> Cells:  # fmt: skip
     """Compute all cells of a grid.
 
@@ -57,6 +59,7 @@ def solve_cells(
     progress, watch : as in `sweep`
     masses : whether displacements of the masses are wanted, after those in the contacts
     places : whether displacements are wanted that depend on the places of contacts at rest
+    further : whether drifts, accelerations and the force on the base are, after those of the masses
     """
     mu, r = axes["mu"], axes["r"]
     beta = np.tile(axes["beta"], (r.size, 1)) if axes["beta"].ndim == 1 else axes["beta"]
@@ -70,9 +73,10 @@ def solve_cells(
     starts = initial_states(system, problem, modal, solver.start)
     settled = places and not general.free  # the place of a free structure is arbitrary
     grid = Grid(beta, kinetic, static, stuck_from, starts, settled, float(solver.cycles), solver.tolerance)
-    count = system.n if masses else 0
-    found = allocate((mu.size, r.size, many), general.count, count)
-    outputs = np.ascontiguousarray(modal.phi) if masses else np.empty((0, modal.phi.shape[1]))
+    outputs = np.empty((0, modal.phi.shape[1]))
+    if masses or further:
+        outputs = observed_rows(system, modal, further)
+    found = allocate((mu.size, r.size, many), general.count, len(outputs))
     cancel = np.zeros(1, np.uint8)
     rows = range(0, mu.size * r.size, max(1, _IN_A_JOB // max(many, 1)))
     jobs: list[Job] = [
@@ -93,17 +97,18 @@ def solve_cells(
     for at_zero in np.flatnonzero(r == 0.0):
         _put_r_zero(found, int(at_zero), beta[at_zero], beta_stick)
     _put_stuck(system, r, found)
-    if masses:
+    if masses or further:
         put_still(general, found.contact_regime, found.lowest, found.highest)
-    _put_offset(system, found, count)
+    put_offset(system, found)
     return found
 
 
-def _put_offset(system: System, found: Cells, masses: int) -> None:
-    """Add the displacements under constant loads."""
-    if not general_of(system).offset.any():
+def put_offset(system: System, found: Cells) -> None:
+    """Add the displacements under constant loads, and these to the force on the base."""
+    offset, kept = general_of(system).offset, found.lowest.shape[-1]
+    if not offset.any():
         return
     z, x = static_offset(system)
-    shift = np.concatenate((z, x)) if masses else z
+    shift = np.concatenate((z, x, np.diff(x, prepend=0.0), np.zeros(system.n), [-offset.sum()]))[:kept]
     for table in (found.lowest, found.highest):
         table += shift

@@ -33,6 +33,9 @@ class Solved(NamedTuple):
     rests: np.ndarray  # (..., N) bool: whether a contact sticks permanently
     contacts: tuple[np.ndarray, np.ndarray]  # (..., N) lowest and highest displacements
     masses: tuple[np.ndarray, np.ndarray]  # (..., n)
+    drifts: tuple[np.ndarray, np.ndarray]  # (..., n) of storeys; of no columns unless they are recorded
+    accelerations: tuple[np.ndarray, np.ndarray]  # (..., n)
+    base: tuple[np.ndarray, np.ndarray]  # (..., 1) force on the base
 
 
 class Output(NamedTuple):
@@ -119,6 +122,9 @@ TABLE = {
     "peak_to_peak": Output(lambda s: _range(s.masses)),
     "midpoint": Output(lambda s: _middle(s.masses), placed=_ALL),
     "work_wall": Output(_number("work_wall"), wanted=_belts),
+    "drift": Output(lambda s: 0.5 * _range(s.drifts)),
+    "acceleration_amplitude": Output(lambda s: _modulus(s.accelerations)),
+    "base_force": Output(lambda s: _modulus(s.base)[..., 0]),
     "mean_velocity": Output(
         lambda s: ways(s.cells) / (2.0 * np.pi),
         wanted=lambda general: general.free,
@@ -162,11 +168,9 @@ def output_values(name: str, system: System, cells: Cells) -> np.ndarray:
     low, high = cells.lowest, cells.highest
     if system.rigid_modes:
         low, high = about_middle(system, cells)
-    values = output.values(
-        Solved(
-            cells, laws, rests, (low[..., :count], high[..., :count]), (low[..., count:], high[..., count:])
-        )
-    )
+    ends = np.cumsum((count, system.n, system.n, system.n))
+    parts = zip(np.split(low, ends, axis=-1), np.split(high, ends, axis=-1), strict=True)
+    values = output.values(Solved(cells, laws, rests, *parts))
     if output.free:
         values = np.where(carried_contacts(system), values, np.nan)
     if name in ("contact_midpoint", "midpoint") and system.rigid_modes:  # of motions at any place
@@ -204,9 +208,14 @@ def about_middle(system: System, cells: Cells) -> tuple[np.ndarray, np.ndarray]:
     """
     half, carried = 0.5 * (cells.highest - cells.lowest), carried_contacts(system)
     lost = drifts(system, cells) | (cells.status == regimes.IRREGULAR)
-    placed = np.append(carried, np.ones(half.shape[-1] - carried.size, dtype=bool))
+    places = carried.size + system.n
+    first = np.arange(half.shape[-1] - places) == 0  # of a chain the first storey alone is carried along
+    placed = np.concatenate((carried, np.ones(system.n, dtype=bool), first))[: half.shape[-1]]
     half = np.where(lost[..., np.newaxis] & placed, np.nan, half)
-    return -half, half
+    low, high = cells.lowest.copy(), cells.highest.copy()
+    last = places + system.n  # forces have a zero of their own
+    low[..., :last], high[..., :last] = -half[..., :last], half[..., :last]
+    return low, high
 
 
 def allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:

@@ -1,5 +1,6 @@
 """One steady state of a general system in time, as labelled variables."""
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -10,11 +11,12 @@ from .._kernels.general.problem import SECTION
 from ..datasets.labels import CONTACT_TRACES, EXCERPT, LABELS, OLDER_NAMES, PER_CONTACT
 from ..datasets.variables import coordinate, label_variable
 from ..model.general import ContactSystem
-from ..model.settings import HARMONICS, Solver
+from ..model.settings import HARMONICS, RECORDED, Solver
 from ..model.system import System
 from .boundaries import find_boundaries
 from .cycle import cycle_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
+from .observed import wants_further
 from .outputs import TABLE, is_wanted, output_values
 from .problem import general_of, static_offset
 from .steps import Steps, steps_of
@@ -71,9 +73,13 @@ def _events(system: System, steps: Steps) -> dict[str, np.ndarray]:
     return found
 
 
-def scalars(system: System, steps: Steps) -> dict[str, np.ndarray]:
-    """Numbers of a steady state: of all, (), of each contact, (N,), of each mass, (n,)."""
-    return {name: output_values(name, system, steps.cells)[0, 0, 0] for name in TABLE}
+def scalars(system: System, steps: Steps, further: Collection[str] = ()) -> dict[str, np.ndarray]:
+    """Numbers of a steady state: of all, (), of each contact, (N,), of each mass, (n,).
+
+    further : names of those among `RECORDED` that are wanted
+    """
+    names = [name for name in TABLE if name not in RECORDED or name in further]
+    return {name: output_values(name, system, steps.cells)[0, 0, 0] for name in names}
 
 
 def labelled(name: str, values: np.ndarray, contacts: int, what: str = "") -> xr.Variable:
@@ -100,9 +106,9 @@ def general_response(
     """
     general = general_of(system)
     refuse_static(general, np.array([mu]))
-    steps = steps_of(system, r, beta, mu, solver)
+    steps = steps_of(system, r, beta, mu, solver, wants_further(system, solver.outputs))
     tau = np.linspace(0.0, 2.0 * np.pi * steps.shown, points * steps.shown + 1)
-    traces, found = _traces(system, steps, tau), scalars(system, steps)
+    traces, found = _traces(system, steps, tau), scalars(system, steps, solver.outputs)
     count = general.count
     rests = found["contact_regime"] == regimes.PERMANENT_STICKING
     for i in np.flatnonzero(still_masses(general, rests)):

@@ -23,8 +23,10 @@ from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines
 from .held import least_static_friction
+from .maps import put_offset
+from .observed import observed_rows
 from .outputs import allocate, drifts
-from .problem import ModalSystem, general_of, problem_of, static_offset
+from .problem import ModalSystem, general_of, problem_of
 from .recorded import recorded_state
 from .starts import initial_states
 from .still import put_still
@@ -123,11 +125,9 @@ def _rests(system: System, problem: Problem, i: int, friction: Friction) -> bool
 def _cells(system: System, problem: Problem, counts: np.ndarray, halves: int, record: Record) -> Cells:
     """Store what was measured over some half periods, as a map does it."""
     general = general_of(system)
-    cells = allocate((1, 1, 1), general.count, system.n)
+    cells = allocate((1, 1, 1), general.count, len(record.masses))
     store_motion(problem, cells, counts, halves, record)
-    shift = np.concatenate(static_offset(system))
-    for table in (cells.lowest, cells.highest):
-        table += shift
+    put_offset(system, cells)
     put_still(general, cells.contact_regime, cells.lowest, cells.highest)
     return cells
 
@@ -148,8 +148,10 @@ def _centre(problem: Problem, series: np.ndarray, lengths: np.ndarray, h: float)
     series[:, first : first + problem.spring.size, 0] -= problem.chi[:, rigid] @ means
 
 
-def steps_of(system: System, r: float, beta: float, mu: float, solver: Solver) -> Steps:
-    """Find the steady state of one cell.
+def steps_of(
+    system: System, r: float, beta: float, mu: float, solver: Solver, further: bool = False
+) -> Steps:
+    """Find the steady state of one cell; `further` as in `cell_steps`.
 
     Raises
     ------
@@ -157,19 +159,23 @@ def steps_of(system: System, r: float, beta: float, mu: float, solver: Solver) -
         None was found.
     """
     problem, modal = problem_of(system, np.array([r]))
-    return cell_steps(system, problem, modal, 0, beta, mu, solver)
+    return cell_steps(system, problem, modal, 0, beta, mu, solver, further)
 
 
 def cell_steps(
-    system: System, problem: Problem, modal: ModalSystem, i: int, beta: float, mu: float, solver: Solver
-) -> Steps:
-    """Find the steady state at r[i] of a problem; see `steps_of`."""
+    system: System, problem: Problem, modal: ModalSystem, i: int, beta: float, mu: float, solver: Solver,
+    further: bool = False,
+) -> Steps:  # fmt: skip
+    """Find the steady state at r[i] of a problem; see `steps_of`.
+
+    further : whether drifts, accelerations and the force on the base are recorded
+    """
     kinetic, static = friction_lines(system, np.array([mu]))
     friction = Friction(kinetic @ np.array([beta, 1.0]), static[0] @ np.array([beta, 1.0]))
     start = initial_states(system, problem, modal, solver.start)[i]
-    phi = np.ascontiguousarray(modal.phi)
+    rows = observed_rows(system, modal, further)
     found, halves, multiplier, counts, record, h, count = recorded_state(
-        problem, i, friction, start, (solver.cycles, solver.tolerance), phi, _FIRST,
+        problem, i, friction, start, (solver.cycles, solver.tolerance), rows, _FIRST,
         settled=not system.rigid_modes,
     )  # fmt: skip
     if found.status not in (REPEATS, AVERAGED):

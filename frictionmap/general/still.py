@@ -32,7 +32,7 @@ def put_still(
     """Take the rounding errors from the displacements of masses that are at rest.
 
     contact_regime : (..., N)
-    lowest, highest : (..., N + n), changed
+    lowest, highest : (..., N + n) and more, changed
     """
     count = general.count
     rests = contact_regime == regimes.PERMANENT_STICKING

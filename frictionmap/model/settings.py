@@ -56,10 +56,17 @@ GeneralOutput = Literal[
     "peak_to_peak",
     "midpoint",
     "work_wall",
+    "drift",
+    "acceleration_amplitude",
+    "base_force",
     "mean_velocity",
     "release_order",
 ]
 GENERAL_OUTPUTS: tuple[str, ...] = get_args(GeneralOutput)
+
+#: Of these, the ones that systems with one rigid contact under one harmonic load have as well: the solver of
+#: general systems records them.
+RECORDED: tuple[GeneralOutput, ...] = ("drift", "acceleration_amplitude", "base_force")
 
 #: Variables of the borders between numbers of stops.
 BORDERS = ("border_r", "border_beta", "border_kind", "border_mu", "stops_below", "stops_above")

@@ -10,7 +10,7 @@ from .. import regimes
 from ..datasets.labels import PER_CONTACT
 from ..jobs import Progress, Watch
 from ..model.general import in_general_form
-from ..model.settings import OUTPUTS, CurveSettings, Solver
+from ..model.settings import OUTPUTS, RECORDED, CurveSettings, GeneralOutput, Solver
 from ..model.sizes import Sizes, Wanted
 from ..theory.boundary_curves import Curves, find_curves, least_ratio
 from .interface import OF_CONTACTS, Engine, Limits, Motion
@@ -25,6 +25,13 @@ def _limits(curves: Curves) -> Limits:
     """Boundaries of the only contact; there are no further intervals without stops."""
     none = np.empty((*curves.beta_lim.shape, SingleEngine.intervals))
     return Limits(curves.beta_lim, curves.beta_stick, curves.beta_stick[..., np.newaxis], none, none)
+
+
+def _split(solver: Solver) -> tuple[Solver, tuple[GeneralOutput, ...]]:
+    """The settings without the outputs that the other engine records, and these."""
+    recorded = tuple(name for name in RECORDED if name in solver.outputs)
+    own = tuple(name for name in solver.outputs if name not in recorded)
+    return (replace(solver, outputs=own or ("status",)) if recorded else solver), recorded
 
 
 class SingleEngine(Engine):
@@ -79,7 +86,26 @@ class SingleEngine(Engine):
     ) -> "xr.Dataset":  # fmt: skip
         from ..single.dataset import single_map
 
-        return single_map(self.system, axes, solver, threads, progress, watch)
+        own, recorded = _split(solver)
+        ds = single_map(self.system, axes, own, threads, progress, watch)
+        return self._with_recorded(ds, axes, solver, recorded, threads, watch)
+
+    def _with_recorded(
+        self, ds: "xr.Dataset", axes: Mapping[str, np.ndarray], solver: Solver,
+        recorded: tuple[GeneralOutput, ...], threads: int | None, watch: Watch | None,
+    ) -> "xr.Dataset":  # fmt: skip
+        """Add outputs that the other engine records; `axes` of one cell for a dataset of one cell."""
+        if not recorded:
+            return ds
+        from .general import GeneralEngine
+
+        twin = GeneralEngine(in_general_form(self.system))
+        found = twin.map(axes, replace(solver, outputs=recorded), threads, None, watch)
+        if "beta" not in ds.dims:
+            found = found.isel(mu=0, r=0, beta=0, drop=True)
+        return ds.assign({name: found[name].variable for name in recorded}).assign_coords(
+            {name: found[name] for name in ("dof",) if name in found.coords}
+        )
 
     def cells(
         self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
@@ -107,7 +133,10 @@ class SingleEngine(Engine):
     def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
         from ..single.response import single_response
 
-        return single_response(self.system, r, beta, mu, solver, points)
+        own, recorded = _split(solver)
+        ds = single_response(self.system, r, beta, mu, own, points)
+        axes = {"mu": np.array([mu]), "r": np.array([r]), "beta": np.array([beta])}
+        return self._with_recorded(ds, axes, solver, recorded, 1, None)
 
     def traced(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> Motion:
         """Without labels, as `cells`, and without the outputs of a map, which would take as long again."""

@@ -374,7 +374,7 @@ def fill_rows(first, last, problem, grid, out, masses, cancel):
     problem : Problem
     grid : Grid
     out : Cells, unresolved
-    masses : (n, m) displacement of the masses per mode; n = 0 where they are not asked for
+    masses : (n, m) displacement of the masses per mode, see `Record`; n = 0 where they are not asked for
     cancel : (1,) set by another thread to end the computation
     """
     workspace, trail = make_workspace(problem, masses, 0), make_trail(problem)

@@ -20,7 +20,7 @@ from .laws.kinds import has_force, holding_stiffness
 from .orbits import NO_REPEAT, REPEATS, newton
 from .pattern import stop_exactly
 from .problem import SECTION, F, H, P, Q, R, padded, varies
-from .record import FORCES, HIGH, LOW, NOTHING, clear_record
+from .record import FORCES, HIGH, LOW, NOTHING, clear_record, displaced_by
 from .return_map import (
     begins_held,
     copy_motion,
@@ -587,7 +587,6 @@ def place_after_start(problem, friction, state, cycles, workspace, shift):
     """
     row, motion, memory = workspace.row, workspace.motion, workspace.memory
     record, places = workspace.record, workspace.places
-    contacts, modes = problem.chi.shape
     from_rest(problem, row, friction, state, motion, memory, record, NOTHING)
     known, _ = follow_to_rest(problem, friction, 2, cycles, 1.0, workspace)
     if not known:
@@ -595,8 +594,5 @@ def place_after_start(problem, friction, state, cycles, workspace, shift):
     _unload(problem, friction, places)
     _fill_moved(problem, places.change, places.moved)
     for i in range(shift.size):
-        shift[i] = 0.0
-        for m in range(modes):
-            share = problem.chi[i, m] if i < contacts else record.masses[i - contacts, m]
-            shift[i] += share * places.moved[m]
+        shift[i] = displaced_by(problem, record, places.moved, i)
     return True

@@ -10,7 +10,7 @@ from .crossings import first_zero, next_turn, value_at
 from .events import MOST, Events, list_step, make_events
 from .laws.contact import moves_one_way
 from .laws.kinds import has_force
-from .problem import LONG, SIZE, TERMS, WIDTH, H, first_contact_row, varies
+from .problem import LONG, SIZE, TERMS, WIDTH, H, R, first_contact_row, varies
 
 NOTHING, RANGES, STEPS, FORCES, EVENTS = 0, 1, 2, 3, 4
 
@@ -33,14 +33,18 @@ WEIGHTS = 0.5 * _LEGENDRE[1]
 
 
 class Record(NamedTuple):
-    """Extremes of the displacements in N contacts, then of the n masses."""
+    """Extremes of the displacements in N contacts, then of n masses, sums of displacements, or forces.
+
+    The rows of `masses` are their shares of the modes; more columns are shares of the channels, and whether a
+    row is a force: a sum of r^2 q'' and of channels.
+    """
 
     active: np.ndarray  # (1,) int: NOTHING, RANGES, STEPS, FORCES or EVENTS
     ranges: np.ndarray  # (2, N + n) lowest and highest
     distance: np.ndarray  # (N,) sliding distances
     slips: np.ndarray  # (3, N) sliding distances of single slips, see `_keep_slip`
     works: np.ndarray  # (2, N) work of friction, and of the walls that move at constant velocity
-    masses: np.ndarray  # (n, m) displacement of the masses per mode
+    masses: np.ndarray  # (n, m) displacement of the masses per mode, or (n, m + D + 1)
     steps: np.ndarray  # (most, rows, WIDTH) the series of every step
     patterns: np.ndarray  # (most, N + 1) sense of every contact, then the length of the step in x
     count: np.ndarray  # (1,) steps there were; more than `most` do not fit
@@ -66,7 +70,7 @@ def _make(problem, masses, most, listed):
 
 @entry
 def make_record(problem, masses, most):
-    """Allocate a record for `most` steps; `masses` (n, m) are the displacements of the masses per mode."""
+    """Allocate a record for `most` steps; `masses` (n, m) or (n, m + D + 1): see `Record`."""
     return _make(problem, masses, most, 0)
 
 
@@ -275,13 +279,48 @@ def mirror(record):
 
 
 @kernel
-def _carried(problem, record, way, i):
-    """Displacement of contact i, then of the masses, by displacements `way` (m,) of rigid-body modes."""
-    contacts = problem.spring.size
-    sum_ = 0.0
-    for m in range(way.size):
-        sum_ += (problem.chi[i, m] if i < contacts else record.masses[i - contacts, m]) * way[m]
+def is_force(problem, record, i):
+    """Whether row i of the masses is a force, see `Record`."""
+    columns = record.masses.shape[1]
+    return columns > problem.squares.size and record.masses[i, columns - 1] != 0.0
+
+
+@kernel
+def displaced_by(problem, record, moved, i):
+    """Change of range i by displacements `moved` (m,) of the modes."""
+    contacts, sum_ = problem.spring.size, 0.0
+    if i >= contacts and is_force(problem, record, i - contacts):
+        return sum_
+    for m in range(problem.squares.size):
+        sum_ += (problem.chi[i, m] if i < contacts else record.masses[i - contacts, m]) * moved[m]
     return sum_
+
+
+@kernel
+def _differentiate_twice(scratch, at, rate):
+    """Replace a series by its second derivative, times a rate."""
+    for k in range(LONG - 2):
+        scratch[at, k] = rate * (k + 1.0) * (k + 2.0) * scratch[at, k + 2]
+    for k in range(LONG - 2, WIDTH):
+        scratch[at, k] = 0.0
+
+
+@kernel
+def _finish_row(problem, row, motion, record, i):
+    """Complete row i of the masses, whose sum of modes is in the scratch; the size of its rounding errors."""
+    modes, channels = problem.push.shape
+    size = row.numbers[SIZE]
+    if record.masses.shape[1] == modes:
+        return size
+    if is_force(problem, record, i):
+        rate = (row.numbers[R] / row.numbers[H]) ** 2
+        _differentiate_twice(motion.scratch, _VALUE, rate)
+        size *= rate
+    for d in range(channels):
+        share = record.masses[i, modes + d]
+        for k in range(WIDTH if share != 0.0 else 0):
+            motion.scratch[_VALUE, k] += share * motion.series[modes + d, k]
+    return size
 
 
 @kernel
@@ -296,9 +335,9 @@ def keep_drift(problem, way, halves, record):
     halves : number of these
     """
     for j in range(record.drift.size):
-        record.drift[j] = _carried(problem, record, way, j) if halves % 2 == 0 else 0.0
+        record.drift[j] = displaced_by(problem, record, way, j) if halves % 2 == 0 else 0.0
     for i in range(record.ranges.shape[1] if halves % 2 == 1 else 0):
-        shift = -0.5 * _carried(problem, record, way, i)
+        shift = -0.5 * displaced_by(problem, record, way, i)
         if shift != 0.0:  # else the ranges of other structures keep their bits
             record.ranges[LOW, i] += shift
             record.ranges[HIGH, i] += shift
@@ -332,4 +371,5 @@ def record_step(problem, row, motion, end, record):
             for m in range(modes):
                 place = place + load(series, m * WIDTH + k) * record.masses[i, m]
             store(place, scratch, _VALUE * WIDTH + k)
-        _keep_range(scratch, _VALUE, end, row.numbers[SIZE], record.ranges, contacts + i, scratch)
+        size = _finish_row(problem, row, motion, record, i)
+        _keep_range(scratch, _VALUE, end, size, record.ranges, contacts + i, scratch)

@@ -79,9 +79,12 @@ def end_row(interval):
 def is_single(problem, masses):
     """Whether this is one mass with one rigid contact, a constant normal load and no belt.
 
-    masses : number of masses whose displacements are wanted; if the wall moves, their extremes are others
+    masses : number of masses whose displacements are wanted; if the wall moves, their extremes are others;
+        more than one: forces are wanted, which the tables do not have
     """
     contacts, modes = problem.chi.shape
+    if masses > 1:
+        return False
     if contacts != 1 or modes != 1 or kind_of(problem, 0) != RIGID or problem.belt[0] != 0.0:
         return False
     for d in range(problem.push.shape[1]):

@@ -10,28 +10,30 @@ from ..datasets.labels import LABELS, OLDER_NAMES, PER_CONTACT, labels_of
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError, NoSteadyState
 from ..jobs import Progress
-from ..model.settings import CurveSettings, Solver
+from ..model.settings import RECORDED, CurveSettings, Solver
 from ..model.system import System
 from .boundaries import find_boundaries
 from .cycle import equivalent, first_harmonics, harmonic_values, parts, phase_values, work_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
 from .held import held_forces, held_ranges
-from .outputs import is_wanted
-from .problem import general_of, problem_of, static_offset
+from .maps import put_offset
+from .observed import wants_further
+from .outputs import allocate, is_wanted, output_values
+from .problem import general_of, problem_of
 from .response import scalars
 from .steps import Steps, cell_steps
 
 #: Scalars of every cell.
 _ALWAYS = ("regime", "contact_regime", "stops_per_cycle", "slips_per_cycle", "period", "status")
 
-_OFFERED = ("amplitude", "phase", "first_harmonic", "energy", "harmonics")
+_OFFERED = ("amplitude", "phase", "first_harmonic", "energy", "harmonics", *RECORDED)
 
 
 def _cell(system: System, steps: Steps, asked: CurveSettings) -> dict[str, np.ndarray]:
     """The requested numbers of one cell."""
-    found = scalars(system, steps)
-    values = {name: found[name] for name in _ALWAYS}
     quantities = asked.quantities
+    found = scalars(system, steps, quantities)
+    values = {name: found[name] for name in (*_ALWAYS, *RECORDED) if name in found}
     phasors = harmonic_values(system, steps, max(1, asked.harmonics))
     if "amplitude" in quantities:
         for name in ("amplitude", "contact_amplitude", "peak_to_peak", "contact_peak_to_peak"):
@@ -54,14 +56,22 @@ def _stuck(system: System, asked: CurveSettings, r: float) -> dict[str, np.ndarr
     general = general_of(system)
     values = {"regime": np.array(regimes.PERMANENT_STICKING), "status": np.array(regimes.RESOLVED),
               "period": np.array(1), "contact_regime": np.zeros(general.count)}  # fmt: skip
-    low, high = (
-        ends[0] + np.concatenate(static_offset(system)) for ends in held_ranges(system, np.array([r]))
-    )
-    moduli, ranges = np.maximum(high, -low), high - low
+    cells = allocate((1, 1, 1), general.count, system.n)
+    further = wants_further(system, asked.quantities)
+    low, high = held_ranges(system, np.array([r]), further)
+    cells = cells._replace(lowest=low[np.newaxis, np.newaxis], highest=high[np.newaxis, np.newaxis])
+    put_offset(system, cells)
+    cells.contact_regime[:], cells.numbers[:] = regimes.PERMANENT_STICKING, 0.0
+    values |= {
+        name: output_values(name, system, cells)[0, 0, 0] for name in RECORDED if name in asked.quantities
+    }
+    low, high = cells.lowest[0, 0, 0], cells.highest[0, 0, 0]
+    ranges = high - low
+    moduli = 0.5 * ranges if system.rigid_modes else np.maximum(high, -low)  # about the middle, as of maps
     if "amplitude" in asked.quantities:
         rigid = ~general.elastic
         for name, table in (("amplitude", moduli), ("peak_to_peak", ranges)):
-            values[name] = table[general.count :]
+            values[name] = table[general.count : general.count + system.n]
             values[f"contact_{name}"] = np.where(rigid, 0.0, table[: general.count])
     _, motions = held_forces(system, np.array([r]))
     if "first_harmonic" in asked.quantities and 1 in motions:
@@ -105,6 +115,7 @@ def general_curves(
     limits = find_boundaries(system, r, mu)
     problem, modal = problem_of(system, r)
     unique = [general.has_equal_friction(float(value)) for value in mu]
+    further = wants_further(system, asked.quantities)
     shape = (mu.size, r.size, beta.size)
     tables: dict[str, np.ndarray] = {}
     for done, (m, i, b) in enumerate(np.ndindex(shape), 1):
@@ -113,9 +124,8 @@ def general_curves(
             if unique[m] and solver.skip == "exact" and beta[b] >= limits.beta_stick[m, i]:
                 values = _stuck(system, asked, float(r[i]))
             else:
-                values = _cell(
-                    system, cell_steps(system, problem, modal, i, float(beta[b]), float(mu[m]), solver), asked
-                )
+                steps = cell_steps(system, problem, modal, i, float(beta[b]), float(mu[m]), solver, further)
+                values = _cell(system, steps, asked)
         except NoSteadyState:
             pass
         for name, value in values.items():

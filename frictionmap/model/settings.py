@@ -73,7 +73,8 @@ BORDERS = ("border_r", "border_beta", "border_kind", "border_mu", "stops_below",
 
 #: Quantities of response curves, in the order of the file.
 Quantity = Literal[
-    "amplitude", "phase", "first_harmonic", "energy", "harmonics", "transmitted_force", "distortion"
+    "amplitude", "phase", "first_harmonic", "energy", "harmonics", "transmitted_force", "distortion", "drift",
+    "acceleration_amplitude", "base_force",
 ]  # fmt: skip
 
 #: Default quantities, and default highest harmonic; rounding error grows with the number of harmonics.
@@ -208,7 +209,7 @@ def curve_settings(
         Highest harmonic to keep, up to 1000; 0: none.  Default 7 where `quantities` contains "harmonics",
         else none.
     quantities : sequence of str, optional
-        Default: all but the last two.  A positive `harmonics` adds "harmonics", 0 removes it.
+        Default: the first five.  A positive `harmonics` adds "harmonics", 0 removes it.
 
     Raises
     ------

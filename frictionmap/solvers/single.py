@@ -128,7 +128,13 @@ class SingleEngine(Engine):
     ) -> "xr.Dataset":  # fmt: skip
         from ..single.curves import single_curves
 
-        return single_curves(self.system, axes, solver, asked, threads, progress, watch)
+        recorded = tuple(name for name in asked.quantities if name in RECORDED)
+        own = tuple(name for name in asked.quantities if name not in recorded)
+        ds = single_curves(
+            self.system, axes, solver, replace(asked, quantities=own), threads, progress, watch
+        )
+        grid = {name: axes[name] for name in ("mu", "r", "beta")}
+        return self._with_recorded(ds, grid, solver, recorded, threads, watch)
 
     def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
         from ..single.response import single_response

@@ -68,6 +68,15 @@ def test_the_force_on_the_base_is_that_of_the_closed_forms():
     np.testing.assert_allclose(cells.base_force, curves.transmitted_force, rtol=1e-9)
 
 
+@pytest.mark.parametrize("name", ["one mass", "two braces", "two braces that stick", "uneven load"])
+def test_curves_have_the_values_of_maps(name):
+    system, beta, mu = CASES[name]
+    cells = fm.sweep(system, [0.8], [beta], mu, solver=SOLVER)
+    curves = fm.curves(system, [0.8], [beta], mu, quantities=OUTPUTS)
+    for output in OUTPUTS:
+        np.testing.assert_allclose(curves[output], cells[output], rtol=1e-11, atol=1e-13)
+
+
 def test_accelerations_in_si_units():
     units = fm.Units(natural_frequency="2 Hz", stiffness="1 kN/mm", base_amplitude="5 mm")
     system = fm.System("joined-base-wall", (1,), damping_ratios=0.05)

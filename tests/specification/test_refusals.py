@@ -133,7 +133,7 @@ map good.toml --set 'axes={sample={file="none.csv"}}'
 curves good.toml --set curves.harmonics=-1
     curves.harmonics must be >= 0; got -1
 curves good.toml --set 'curves.quantities=["phase_lag"]'
-    curves.quantities must be one of amplitude, phase, first_harmonic, energy, harmonics, transmitted_force, distortion; got 'phase_lag' (did you mean phase?)
+    curves.quantities must be one of amplitude, phase, first_harmonic, energy, harmonics, transmitted_force, distortion, drift, acceleration_amplitude, base_force; got 'phase_lag' (did you mean phase?)
 curves good.toml --set 'axes={damping_ratios=[0,0.1]}'
     cannot run curves with [axes]: [axes] is supported by `map` only; remove it
 
@@ -719,9 +719,9 @@ fm.sweep(ONE, [1.0], [0.5], progress=1)
 fm.curves(ONE, [1.0], [0.5], harmonics=-1)
     harmonics must be >= 0; got -1
 fm.curves(ONE, [1.0], [0.5], quantities=["phase_lag"])
-    quantities must be one of amplitude, phase, first_harmonic, energy, harmonics, transmitted_force, distortion; got 'phase_lag' (did you mean phase?)
+    quantities must be one of amplitude, phase, first_harmonic, energy, harmonics, transmitted_force, distortion, drift, acceleration_amplitude, base_force; got 'phase_lag' (did you mean phase?)
 fm.curves(ONE, [1.0], [0.5], quantities=[])
-    quantities must name at least one of amplitude, phase, first_harmonic, energy, harmonics, transmitted_force, distortion; got none
+    quantities must name at least one of amplitude, phase, first_harmonic, energy, harmonics, transmitted_force, distortion, drift, acceleration_amplitude, base_force; got none
 fm.response(ONE, 0, 0.5)
     r must be > 0: at r = 0 there is no motion in time; got 0
 fm.response(ONE, 1.0, np.inf)

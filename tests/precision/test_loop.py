@@ -1,7 +1,6 @@
 """Force of a damper over a given motion, against the spring's force added up in small steps."""
 
 import json
-import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from frictionmap.errors import InputError
 from frictionmap.identify import loop
 from frictionmap.identify.loop.branches import Layout
 from frictionmap.identify.loop.problem import DamperTest, modelled_force, places_of
+from frictionmap.identify.rigs.configuration import identify, load_rig
 
 FRICTION, STIFFNESS, BACKLASH = 60.0, 150.0, 0.3
 
@@ -133,12 +133,7 @@ SETS = (
 def test_reference_loops(name: str, reference_path: Callable[[str], Path]) -> None:
     folder = reference_path("identification-2")
     truth = json.loads((folder / "truth.json").read_text())[f"loop-{name}"]
-    rig = tomllib.loads((folder / f"loop-{name}.toml").read_text())
-    time, moved, force = np.loadtxt(folder / f"loop-{name}.csv", delimiter=",", skiprows=1).T
-    known = dict(rig["known"])
-    speeds = known.pop("law_speeds_mm_s", None)
-    given = {"velocity" if name == "velocity" else "displacement": moved}
-    ds = loop(time, force, known=known, free=rig["fit"]["free"], law_speeds=speeds, **given)
+    ds = identify(load_rig(folder / f"loop-{name}.toml"))
     for parameter, row in truth["parameters"].items():
         one = {
             key: float(ds.sel(parameter=parameter)[key])
@@ -152,6 +147,24 @@ def test_reference_loops(name: str, reference_path: Callable[[str], Path]) -> No
             assert 0.8 < one["standard_error"] / row["standard_error"] < 1.25, parameter
     if name == "held":
         assert abs(float(ds["stiffness_sum"]) - 420.0) < 4.0 * float(ds["stiffness_sum_standard_error"])
+
+
+def test_velocities_and_speed_laws_of_a_configuration(tmp_path: Path) -> None:
+    """The columns, units and knots of a file are those of the arrays."""
+    time, _, force = measured(1)
+    velocity = -3.2 * np.pi * np.sin(2.0 * np.pi * time) + np.random.default_rng(1).normal(0.0, 0.02, 601)
+    table = np.column_stack((time, velocity / 1000.0, force))
+    np.savetxt(tmp_path / "a.csv", table, "%.12g", ",", header="time_s,velocity_m_s,force_N", comments="")
+    (tmp_path / "a.toml").write_text(
+        '[data]\nkind = "loop"\nfile = "a.csv"\n[known]\nlaw_speeds_mm_s = [0.0, 5.0]\noffset = "2 N"\n'
+    )
+    found = identify(load_rig(tmp_path / "a.toml"))
+    wanted = loop(time, force, velocity=velocity, law_speeds=[0.0, 5.0], known={"offset": 2.0})
+    assert found["parameter"].values.tolist() == ["friction", "contact_stiffness", "offset", "factor_1"]
+    # numbers of twelve digits in the file
+    np.testing.assert_allclose(found["estimate"], wanted["estimate"], rtol=1e-6)
+    law = found.sel(parameter="factor_1")
+    assert abs(float(law["estimate"]) - 1.0) < 4.0 * float(law["standard_error"])
 
 
 def test_picture_of_force_over_motion() -> None:

@@ -13,6 +13,7 @@ import frictionmap as fm
 from benchmarks.measures import coverage
 from benchmarks.measures.coverage import counting, disturbances
 from benchmarks.measures.coverage import decays as made_decays
+from benchmarks.measures.coverage import sensors as made_sensors
 from benchmarks.measures.coverage.case import Estimate, Made, Trial, attempt, cramer_rao
 from benchmarks.references.chains import chain, continuous
 from benchmarks.references.shaken import Rig, steady
@@ -26,6 +27,30 @@ def test_decays_are_those_marched_from_the_equation_of_motion(decay):
     wanted, count = decays.marched(truth, decay.mu, time)
     assert made_decays.half_cycles(decay) == count
     np.testing.assert_allclose(made_decays.places(decay, count, time), wanted, atol=1e-8)
+
+
+@pytest.mark.parametrize("order", [0, 1, 2])
+@pytest.mark.parametrize("low_pass", [None, (1, 12.0), (2, 20.0)])
+def test_signals_of_sensors_are_those_marched_with_their_filters(order, low_pass):
+    decay = made_decays.Decay(2.0, 0.01, 0.4, -6.0, 0.1, 0.0)
+    truth = decays.Truth(*decay[:6], 0.0, 0.0, 0.0)
+    time = np.arange(300) / 75.0
+    for coupling in (None, 0.2):
+        found = made_sensors.seen(decay, made_sensors.Route(order, low_pass, coupling), time)
+        wanted = decays.marched_signal(truth, order, time, low_pass, coupling)
+        scale = 6.0 * (4.0 * np.pi) ** order
+        # the reference interpolates its steps, which are long while the mass is at rest
+        np.testing.assert_allclose(found, wanted, atol=1e-7 * scale)
+
+
+def test_a_wander_with_an_ac_coupling_is_no_reason_to_refuse():
+    """Its polynomials hide the offset, not friction and damping."""
+    names = [case.name for case in coverage.KINDS["free_decay"]]
+    found = coverage.trial(("free_decay", names.index("acceleration, AC coupling"), 18))
+    assert found.refusal is None
+    assert any("a polynomial of time with" in words for words in found.warnings)
+    for name in ("f_n", "zeta", "x_F"):
+        assert abs(found.estimates[name].deviation) < 4.0
 
 
 @pytest.mark.parametrize(("contact", "friction"), [("fixed-wall", 0.7), ("joined-base-wall", 0.08)])

@@ -6,9 +6,9 @@ with the public function as a user would. Each row of the table counts, over its
 contain their true value, the refusals and the warnings. It also compares errors with the stated standard
 errors.
 
-The data are generated without the package: decays in closed form by half cycles, records by
-`references.shaken`, forced responses by half-period propagators or by marching, sweeps from M, K and C, and
-forces of dampers by marching their springs.
+The data are generated without the package: decays in closed form by half cycles, those of sensors with
+filters by matrix exponentials, records by `references.shaken`, forced responses by half-period propagators or
+by marching, sweeps from M, K and C, and forces of dampers by marching their springs.
 """
 
 import os
@@ -22,14 +22,14 @@ import numpy as np
 
 from ...report.quoted_coverage import HEADER, coverage_notes, coverage_rows
 from ...report.record import machine, save, table
-from . import decays, forced, joint, records, sweeps
+from . import decays, forced, joint, records, sensors, sweeps
 from .case import SEEDS, Trial, attempt
 from .counting import STATED, row
 from .figure import draw
 
 #: Cases by kind of measurement.
 KINDS = {
-    "free_decay": decays.CASES,
+    "free_decay": decays.CASES + sensors.CASES,
     "forced": forced.CASES,
     "record": records.CASES,
     "sweep": sweeps.CASES,

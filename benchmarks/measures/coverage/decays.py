@@ -101,7 +101,7 @@ def _made(
     return Made(truth, lambda: fm.identify.free_decay(time, x, **arguments), bound)
 
 
-def _light(rng: np.random.Generator, noise: float | None = None) -> Decay:
+def light(rng: np.random.Generator, noise: float | None = None) -> Decay:
     """Random decay with light damping; noise as a share of the first amplitude, or some 0.01 mm."""
     f_n, zeta = rng.uniform(1.5, 5.0), 10.0 ** rng.uniform(-2.5, -1.5)
     first = rng.choice([-1.0, 1.0]) * rng.uniform(6.0, 12.0)
@@ -119,9 +119,9 @@ def _first_turn(rng: np.random.Generator) -> float:
 
 def _heavy(rng: np.random.Generator) -> Decay:
     """Random decay with a damping ratio of about 0.3, which has about four half cycles."""
-    light, f_n = _light(rng), rng.uniform(1.0, 3.0)
-    return light._replace(
-        f_n=f_n, zeta=rng.uniform(0.25, 0.35), x_F=abs(light.X0) * rng.uniform(0.01, 0.03),
+    mild, f_n = light(rng), rng.uniform(1.0, 3.0)
+    return mild._replace(
+        f_n=f_n, zeta=rng.uniform(0.25, 0.35), x_F=abs(mild.X0) * rng.uniform(0.01, 0.03),
         t0=_first_turn(rng) / (2.0 * f_n),
     )  # fmt: skip
 
@@ -168,14 +168,14 @@ def _fixed(decay: Decay) -> Callable[[np.random.Generator], Decay]:
 
 
 CASES = (
-    Case("noise only", partial(_made, draw=_light)),
-    Case("gap of 1 to 1.6 cycles", partial(_made, draw=_light, change=_gap)),
-    Case("drift, fitted", partial(_made, draw=_light, change=_drift, drift=True)),
-    Case("wander of the zero", partial(_made, draw=_light, change=_wander)),
-    Case("outliers", partial(_made, draw=_light, change=_outliers, **robust(fm.identify.free_decay))),
-    Case("clipped", partial(_made, draw=_light, change=_clipped)),
+    Case("noise only", partial(_made, draw=light)),
+    Case("gap of 1 to 1.6 cycles", partial(_made, draw=light, change=_gap)),
+    Case("drift, fitted", partial(_made, draw=light, change=_drift, drift=True)),
+    Case("wander of the zero", partial(_made, draw=light, change=_wander)),
+    Case("outliers", partial(_made, draw=light, change=_outliers, **robust(fm.identify.free_decay))),
+    Case("clipped", partial(_made, draw=light, change=_clipped)),
     Case("zeta 0.25 to 0.35", partial(_made, draw=_heavy)),
-    Case("4 % noise", partial(_made, draw=partial(_light, noise=0.04))),
+    Case("4 % noise", partial(_made, draw=partial(light, noise=0.04))),
     *(
         Case(
             f"gap of {gap:g} s, 3 Hz, zeta 0.01, mu 2",

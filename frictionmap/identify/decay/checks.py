@@ -104,6 +104,9 @@ def check_misfit(x: np.ndarray, rms: float) -> None:
 def check_identifiable(record: Record, fit: DecayFit) -> None:
     """Refuse a record that does not determine parameters separately.
 
+    Polynomials of a wander may take the place of a slow state of a filter and of the zero: these then have
+    large errors, which are stated.
+
     Raises
     ------
     InputError
@@ -112,7 +115,7 @@ def check_identifiable(record: Record, fit: DecayFit) -> None:
     """
     indices, _ = undetermined(fit.problem, fit.solution, _SEPARATE)
     together = [record.names[index] for index in indices if index < len(record.names)]
-    if not together:
+    if not together or record.terms:
         return
     words = " and ".join(together)
     if (indices >= len(record.names)).any() and record.sensor is not None:

@@ -364,6 +364,12 @@ def build_parser() -> argparse.ArgumentParser:
     sub = command("design", "which friction to choose: least peak, within a limit, no stops, stuck", text)
     _takes_config(sub, "CONFIG", "configuration with a table [design]", "design.band=[0.5,2]")
     _takes_threads(sub)
+    text = (
+        "Reduce the matrices of a configuration with the key reduce to its contacts, loads, kept degrees of "
+        "freedom and modes; print what this costs in the range of r; write M, K, C and the names of rows."
+    )
+    sub = command("reduce", "small matrices of a structure with many degrees of freedom", text)
+    _takes_config(sub, out="SMALL.npz")
     _takes_files(command)
     _takes_beginnings(command)
     return parser

@@ -289,6 +289,24 @@ def _export_page(options: Options, scene: "Scene") -> None:
         _print(f"wrote {options.output} ({len(page) / 1e6:.2g} MB)")
 
 
+def _reduce(options: Options) -> None:
+    """Reduce the matrices of a configuration and write them."""
+    from ..files.config import load_config
+    from ..files.places import claimed
+    from ..steady.reduced import describe_reduced, refuse_unreduced, write_reduced
+
+    path = options.output
+    if path is not None and path.suffix.lower() != ".npz":
+        raise InputError(f"-o must end in .npz; got {path}")
+    config = load_config(options.config, options.overrides)
+    refuse_unreduced(config.system)
+    path = path or Path(f"{config.name}-reduced.npz")
+    with claimed(path, options.overwrite, config.files) as output:
+        words = describe_reduced(config.system, config.r, config.mu, path)
+        output.fill(lambda scratch: write_reduced(config.system, scratch))
+    _report(options, output, *words)
+
+
 def _identify(options: Options) -> None:
     from ..files.estimates import describe_estimates
     from ..files.places import claimed
@@ -522,6 +540,7 @@ def _check_text(arguments: Sequence[str]) -> None:
 _COMMANDS: dict[str, Callable[[Options], None]] = {
     "plot": _plot,
     "info": _info,
+    "reduce": _reduce,
     "identify": _identify,
     "design": _design,
     "export": _export,

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ..model.contact import Contact
     from ..model.settings import Solver
     from ..model.system import System
+    from ..structures.dofs import Dofs
     from ..units.scales import Units
 
 #: Larger axes and matrices are not written as text, but named in a comment.
@@ -158,9 +159,9 @@ def _contacts_and_loads(system: "System") -> dict[str, object]:
     found: dict[str, object] = {}
     if system.contacts is not None:
         found |= {"contact": None, "contact_masses": (1,)}
-        found["contacts"] = [_contact_keys(one) for one in contacts_of(system)]
+        found["contacts"] = [_contact_keys(one, system.dofs) for one in contacts_of(system)]
     else:
-        one = _contact_keys(contacts_of(system)[0])
+        one = _contact_keys(contacts_of(system)[0], system.dofs)
         found["contact_stiffness"] = one.get("stiffness")
         found |= {name: one.get(name) for name in WALLS}
         found["normal_load"] = one.get("normal_load")
@@ -179,12 +180,15 @@ def _contacts_and_loads(system: "System") -> dict[str, object]:
     return found
 
 
-def _contact_keys(contact: "Contact") -> dict[str, object]:
-    """A contact as an entry of system.contacts, without defaults."""
-    own = {key: getattr(contact, key) for key in ("name", "ratio", "force", "mu", "stiffness", *WALLS)}
+def _contact_keys(contact: "Contact", dofs: "Dofs") -> dict[str, object]:
+    """A contact as an entry of system.contacts, without defaults; its masses by their numbers."""
+    given: tuple = contact.masses  # type: ignore[assignment]
+    masses = [dofs.number(one, "masses") for one in given]
+    own = {key: getattr(contact, key) for key in ("ratio", "force", "mu", "stiffness", *WALLS)}
+    own = {"name": contact.label if masses != list(given) else contact.name, **own}
     own = {key: list(value) if isinstance(value, tuple) else value for key, value in own.items()}
     normal = [{"n": n, "re": value.real, "im": value.imag} for n, value in contact.nu.items()]
-    found = {"kind": contact.kind, "masses": list(contact.masses), **own, "normal_load": normal or None}  # type: ignore[arg-type]
+    found = {"kind": contact.kind, "masses": masses, **own, "normal_load": normal or None}
     return {
         key: value
         for key, value in found.items()

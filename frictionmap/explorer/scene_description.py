@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..theory.refinement import boundary_check
+from ..steady.refinement import boundary_check
 from ..units.scales import scales_of
 from ..units.table import UNITS, handy_unit
 from ..version import __version__

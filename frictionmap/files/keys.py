@@ -279,7 +279,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         ),
         Key(
             "reduce",
-            "with matrices: reduce them to contact, load, the degrees of freedom to keep and some modes",
+            "with matrices: reduce them to contacts, loads, the degrees of freedom to keep and some modes",
             table(
                 {
                     "keep": several(DOF, 0),

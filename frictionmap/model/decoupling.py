@@ -58,7 +58,7 @@ class Decoupling:
 
         frequencies = _frequencies(modes, low, high)
         pairs = ((compliances(at, modes.damping), compliances(at, self.damping)) for at in frequencies)
-        return largest_error(pairs, units, np.array([1.0, 0.0]))
+        return largest_error(pairs, units, np.array([[1.0], [0.0]]))
 
 
 def _frequencies(modes: ModalModel, low: float, high: float) -> np.ndarray:

@@ -172,6 +172,30 @@ class ContactSystem:
         return np.array([group.vector for group in self.groups])
 
     @property
+    def independent(self) -> np.ndarray:
+        """Vectors of contacts, as many as are linearly independent: those held, all are held."""
+        found = self.vectors[:1]
+        for vector in self.vectors[1:]:
+            more = np.vstack((found, vector))
+            found = more if _rank(more) == len(more) else found
+        return found
+
+    @property
+    def rows(self) -> list[int]:
+        """Rows of the masses in contact or under load, counted from 0."""
+        used = [*self.vectors, *self.forces.values(), self.offset]
+        return np.flatnonzero(np.any(used, axis=0)).tolist()
+
+    def at(self, rows: np.ndarray) -> "ContactSystem":
+        """The same contacts and loads of a structure that keeps only these rows, `self.rows` among them."""
+        return replace(
+            self,
+            groups=tuple(replace(group, vector=group.vector[rows]) for group in self.groups),
+            forces={n: force[rows] for n, force in self.forces.items()},
+            offset=self.offset[rows],
+        )
+
+    @property
     def orders(self) -> tuple[int, ...]:
         """Orders of all harmonics, of normal loads too."""
         normal = {n for group in self.groups for n in group.first.nu}

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..structures.dofs import Dofs
-from ..structures.files import NAMES
+from ..structures.files import DOFS, LABELS, NAMES
 from ..structures.reduction import Reduction
 from ..structures.structure import LARGEST, TOLERANCE, Structure, in_range
 from .rigid_modes import count_rigid
@@ -39,7 +39,14 @@ class Matrices:
         """The matrices by name, and the numbers of their rows unless these are 1 to n."""
         named = dict(zip(NAMES, (self.mass, self.stiffness, self.damping), strict=True))
         found = {name: array for name, array in named.items() if array is not None}
-        return found if self.dofs.all_there else {**found, "dofs": np.array(self.dofs.numbers)}
+        return found if self.dofs.all_there else {**found, DOFS: np.array(self.dofs.numbers)}
+
+    @property
+    def named_arrays(self) -> dict[str, np.ndarray]:
+        """The matrices by name, and numbers and labels of their rows, as a file keeps them."""
+        words = self.dofs.written_labels
+        more = {LABELS: np.array(words)} if words else {}
+        return {**self.arrays, DOFS: np.array(self.dofs.numbers), **more}
 
     def _content(self) -> tuple[bytes, ...]:
         # adding 0.0 makes -0.0 the 0.0 that it equals

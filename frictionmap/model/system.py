@@ -14,6 +14,7 @@ from ..errors import InputError
 from ..structures.accuracy import Accuracy
 from ..structures.craig_bampton import Reduce, checked_reduce
 from ..structures.dofs import Dofs
+from ..structures.files import NAMES
 from ..structures.reduction import Reduction, reduce_structure
 from ..structures.structure import Structure, read_structure
 from .contact import CONTACTS, Contact, numbers
@@ -195,14 +196,14 @@ class System(Shown):
         Instead of load_mass: the phasors p_k [P] of loads Re(p_k e^{i tau}) on all n masses.
     reduce : mapping, optional
         With matrices: ``{"keep": [17, 112], "modes": 16}`` reduces them by the Craig-Bampton method to these
-        degrees of freedom, those in contact and under load, and this many modes with all these held.
-        Contact, load and results keep the numbers of the file.  Within the requested range of r the errors of
-        natural frequencies and compliances must not exceed "allow", by default 0.001; otherwise an InputError
-        states how many modes suffice.  Boundaries of continuous motion may need more modes, because higher
-        harmonics of friction excite modes above that range: the attribute `reduction_check` of datasets
-        states what changes with all modes, or at least 100.  On a finer mesh these boundaries and the number
-        of stops of a rigid contact change again; the guide on own structures shows why, and recommends a
-        contact stiffness.
+        degrees of freedom, those in all contacts and under all loads, and this many modes with all these
+        held.  Contacts, loads and results keep the numbers of the file.  Within the requested range of r the
+        errors of natural frequencies and compliances must not exceed "allow", by default 0.001; otherwise an
+        InputError states how many modes suffice.  Boundaries of continuous motion may need more modes,
+        because higher harmonics of friction excite modes above that range: the attribute `reduction_check` of
+        datasets states what changes with all modes, or at least 100.  On a finer mesh these boundaries and
+        the number of stops of a rigid contact change again; the guide on own structures shows why, and
+        recommends a contact stiffness.
     rayleigh : sequence of float, optional
         With matrices, instead of damping_ratios and C: [a, b] of C = a M + b K, >= 0, in their units.
     decouple : float, optional
@@ -289,23 +290,22 @@ class System(Shown):
         self._set("contacts", check_contacts(self))
         self._check_contact()
         self._check_load()
+        self._set("_contact_system", contact_system(self))
         if isinstance(self.matrices, Structure):
             self._set(
                 "matrices",
                 self._reduced(self.matrices, previous) if self.reduce else full_matrices(self.matrices),
             )
+        if self.reduction is not None:
+            self._set("_contact_system", self._contact_system.at(self.reduction.reduced.rows))
         scale = self.frequency_scale
         if scale is None and self.reduction is not None:  # r does not depend on the reduction
             scale = self.reduction.first_frequency
         self._set("_scale", scale)
         self._check_damping()
-        self._set("_contact_system", contact_system(self))
-        if self.reduce is not None and (uses_general(self) or self.rigid_modes):
+        if self.reduce is not None and self.rigid_modes:
             raise InputError(
-                "cannot use",
-                "reduce",
-                "with several contacts, springs, belts, loads of several harmonics or a free structure: they "
-                "need all degrees of freedom; omit it",
+                "cannot use", "reduce", "with a free structure: it needs all degrees of freedom; omit it"
             )
         given = (self.matrices, self.dampers)
         if self.n > 1 or self.rigid_modes or any(one is not None for one in given):
@@ -364,7 +364,8 @@ class System(Shown):
                 self._set("matrices", given.reduction.structure)
                 self._set("reduce", self.reduce or given.reduction.asked)
             elif self.reduce is not None:
-                self._set("matrices", Structure(given.arrays, given.dofs, given.source, 0))
+                arrays = {name: given.arrays[name] for name in NAMES if name in given.arrays}
+                self._set("matrices", Structure(arrays, given.dofs, given.source, 0))
         elif not isinstance(given, Structure):
             self._set("matrices", read_structure(given))
         if self.reduce is not None:
@@ -376,14 +377,9 @@ class System(Shown):
     def _reduced(self, structure: Structure, previous: Reduction | None) -> Matrices:
         """Reduce the structure; a previous reduction that fits is used again."""
         assert isinstance(self.reduce, Reduce)
-        base = self.excitation == "base"
-        loaded: list[int] = []
-        if self.load is not None:
-            loaded = [number for number, load in zip(self.dofs.numbers, self.load, strict=True) if load]
-        elif not base:
-            loaded = [self.load_mass]  # type: ignore[list-item]
-        kept: set[int] = {*self.contact_masses, *self.reduce.keep, *loaded}  # type: ignore[arg-type]
-        asked = self.reduce, tuple(sorted(kept)), self.contact_vector, base
+        used = (self.dofs.numbers[row] for row in self._contact_system.rows)
+        kept = tuple(sorted({*used, *self.reduce.keep}))
+        asked = self.reduce, kept, self._contact_system.independent, self.excitation == "base"
         if previous is not None and previous.like(*asked):
             return reduced_matrices(previous)
         return reduced_matrices(reduce_structure(structure, *asked))
@@ -670,6 +666,8 @@ class System(Shown):
         if self.excitation == "base" and self.matrices is not None:
             return stiffness.sum(axis=1).astype(complex)
         load = np.zeros(self.n, dtype=complex)  # only the first spring of a chain ends at the base
+        if self.reduction is not None and self.load_mass not in self.dofs.numbers:  # other loads are given
+            return np.array(self._contact_system.forces.get(1, load))
         load[self.dofs.row(self.load_mass)] = 1.0  # type: ignore[arg-type]
         return load
 

@@ -4,8 +4,9 @@
 module           what is in it
 ===============  ======================================================================
 configured       a configuration in the place of a system and its axes
+refinement       change of boundaries and maps of a reduced structure with all modes or many more
+reduced          matrices of a reduced structure as a file, and what they cost
 boundaries       `boundaries`: boundaries of the regimes over frequency, of any system
-refinement       change of the map of a reduced structure with all modes or many more
 sweep            `sweep`: maps of one system, or of many along further axes
 curves           `curves`: response curves over frequency
 points           first harmonics at a list of points (r, beta)

@@ -8,10 +8,10 @@ from ..datasets.physical import with_units
 from ..datasets.variables import stamp
 from ..model.system import System
 from ..solvers.choose import engine_of
-from ..theory.refinement import boundary_check
 from ..units.axes import KINDS, ratios
 from ..units.scales import Units, scales_of
 from .configured import Configured, system_and_axes
+from .refinement import boundary_check
 
 
 def boundaries(

@@ -12,9 +12,9 @@ from ..errors import InputError
 from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
 from ..solvers.choose import engine_of
-from ..theory.refinement import boundary_check
 from ..units.axes import KINDS, ratios, require
 from ..units.scales import Scales, Units, scales_of
+from .refinement import boundary_check
 
 #: Samples of a time history per excitation period.
 POINTS = 2000

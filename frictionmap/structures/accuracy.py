@@ -1,12 +1,12 @@
 """Accuracy of a reduction: natural frequencies and compliances against those of the whole structure.
 
-Both without damping, which would hide errors, and both with the contact free and held.  Compliances are those
-between all kept degrees of freedom, away from resonances, each in the unit of its static ones; their error is
-that of all together, over the larger of those free and held.
+Both without damping, which would hide errors, and both with the contacts free and all held.  Compliances are
+those between all kept degrees of freedom, away from resonances, each in the unit of its static ones; their
+error is that of all together, over the larger of those free and held.
 
 Friction that reverses at once has harmonics far above the range, and sticking depends on the mass that the
 contact feels in that instant, theory.md 3, and a reduction keeps few of the masses around it separate.  So
-the contact's effective mass is reported with the errors, but has no limit.
+the contacts' effective masses are reported with the errors, but have no limit.
 """
 
 import threading
@@ -71,12 +71,14 @@ def _found(find: Callable[[], T]) -> T | InputError:
 class Accuracy(NamedTuple):
     """Largest relative errors in a range of frequency, and the effect on higher frequencies.
 
-    contact_mass : 1/(c M^-1 c) of the reduced structure, over that of the whole one; 1 or more
+    contact_mass : 1/(c M^-1 c) of the reduced structure, over that of the whole one; 1 or more; the largest
+        of all contacts
     """
 
     frequencies: float
     compliances: float
     contact_mass: float
+    contacts: int = 1  # how many there are
 
     @property
     def worst(self) -> float:
@@ -94,22 +96,27 @@ class Accuracy(NamedTuple):
 
     def beyond(self) -> str:
         """Describe the effect on frequencies above the range."""
-        return f"the contact's effective mass is {self.contact_mass:.4g} times that of the whole structure"
+        whose = (
+            "the contact's effective mass is"
+            if self.contacts == 1
+            else "effective masses of contacts are up to"
+        )
+        return f"{whose} {self.contact_mass:.4g} times that of the whole structure"
 
 
 class FullStructure:
     """A structure with sparse matrices, the reference for its reductions."""
 
-    def __init__(self, mass: Any, stiffness: Any, contact: np.ndarray, forces: np.ndarray) -> None:
-        """contact: c (n,); forces (n, k): the loads whose works on each other are the compliances."""
-        self.contact = contact
+    def __init__(self, mass: Any, stiffness: Any, contacts: np.ndarray, forces: np.ndarray) -> None:
+        """contacts: c of each (N, n); forces (n, k): the loads whose works on each other are compliances."""
+        self.contacts = contacts
         self.forces = forces
         self._mass, self._stiffness = mass, stiffness
-        held = _held(contact)
+        held = _held(contacts)
         self._pairs = ((mass, stiffness), (held.T @ mass @ held, held.T @ stiffness @ held))
         static = factor(stiffness).solve(forces)
         self.units = np.sqrt(np.einsum("ij,ij->j", forces, static))
-        self.inverse_mass = _inverse_mass(mass, contact)
+        self.inverse_masses = _inverse_masses(mass, contacts)
 
     def frequencies(self, held: bool, most: float, guess: int, limit: int) -> np.ndarray:
         """Natural frequencies up to `most`, increasing, no more than `limit`; `guess`: how many may be."""
@@ -130,27 +137,36 @@ class FullStructure:
         return self.forces.T @ splu(dynamic).solve(self.forces)
 
 
-def _inverse_mass(mass: Any, contact: np.ndarray) -> float:
-    """c M^-1 c over the degrees of freedom that have mass; infinite if some of their motions have none."""
+def _inverse_masses(mass: Any, contacts: np.ndarray) -> np.ndarray:
+    """c M^-1 c of each contact, (N,), over the degrees of freedom that have mass; infinite if some of their
+    motions have none.
+    """
     moving = np.flatnonzero(np.asarray(abs(mass).sum(axis=1)))
-    pull = contact[moving]
+    pulls = contacts[:, moving]
     try:
-        return float(pull @ factor(mass[moving][:, moving]).solve(pull))
+        factors = factor(mass[moving][:, moving])
     except InputError:
-        return np.inf
+        return np.full(len(contacts), np.inf)
+    return np.array([pull @ factors.solve(pull) for pull in pulls])
 
 
-def _held(contact: np.ndarray) -> Any:
-    """Motions (n, n - 1) that leave the contact alone, sparse."""
+def _held(contacts: np.ndarray) -> Any:
+    """Motions (n, m) that leave all contacts alone, sparse.
+
+    Degrees of freedom that contacts between them join move as one; joined to a wall, not at all.
+    """
     from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
 
-    rows = np.flatnonzero(contact)
-    free = np.setdiff1d(np.arange(contact.size), rows[:1])
-    place = np.arange(free.size)
-    at_row, at_column = free, place
-    if rows.size > 1:  # the first of two goes with the second
-        at_row, at_column = np.append(free, rows[0]), np.append(place, np.searchsorted(free, rows[1]))
-    return coo_array((np.ones(at_row.size), (at_row, at_column)), shape=(contact.size, free.size)).tocsr()
+    n = contacts.shape[1]
+    ends = [np.flatnonzero(contact) for contact in contacts]
+    pairs = np.array([(rows[0], rows[1] if rows.size > 1 else n) for rows in ends])  # n: the wall
+    joined = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n + 1, n + 1))
+    part = connected_components(joined, directed=False)[1]
+    rows = np.flatnonzero(part[:n] != part[n])
+    columns = np.unique(part[rows], return_inverse=True)[1]
+    count = int(columns.max(initial=-1)) + 1
+    return coo_array((np.ones(rows.size), (rows, columns)), shape=(n, count)).tocsr()
 
 
 class Comparison:
@@ -166,9 +182,9 @@ class Comparison:
     def accuracy(self, reduced: Reduced) -> Accuracy:
         """The errors of a reduced structure."""
         mass, stiffness = reduced.arrays["M"], reduced.arrays["K"]
-        contact = reduced.motions.T @ self._whole.contact
+        contacts = self._whole.contacts @ reduced.motions
         forces = reduced.motions.T @ self._whole.forces
-        own = _own_frequencies(mass, stiffness, contact)
+        own = _own_frequencies(mass, stiffness, contacts)
         high = (1.0 + _NEAR) * self._range[1]  # a resonance just beyond the range is felt in it
         if not self._frequencies or max(map(len, self._frequencies)) >= self._limit:
             self._limit = mass.shape[0] + 1  # one too many suffices to show that some are missing
@@ -182,13 +198,14 @@ class Comparison:
             return forces.T @ np.linalg.solve(stiffness - omega * omega * mass, forces)
 
         frequencies = max(_difference(w, one) for w, one in zip(self._frequencies, own, strict=True))
-        pull = np.linalg.lstsq(forces, contact, rcond=None)[0]
+        pulls = np.linalg.lstsq(forces, contacts.T, rcond=None)[0]
         pairs = ((compliances(omega), true) for omega, true in self._samples)
-        inverse_mass = contact @ np.linalg.solve(mass, contact)
+        inverse_masses = np.einsum("kn,nk->k", contacts, np.linalg.solve(mass, contacts.T))
         return Accuracy(
             frequencies,
-            largest_error(pairs, self._whole.units, pull),
-            self._whole.inverse_mass / float(inverse_mass),
+            largest_error(pairs, self._whole.units, pulls),
+            float(np.max(self._whole.inverse_masses / inverse_masses)),
+            len(contacts),
         )
 
     def _places(self) -> np.ndarray:
@@ -207,17 +224,17 @@ class Comparison:
 
 
 def largest_error(
-    pairs: Iterable[tuple[np.ndarray, np.ndarray]], units: np.ndarray, pull: np.ndarray
+    pairs: Iterable[tuple[np.ndarray, np.ndarray]], units: np.ndarray, pulls: np.ndarray
 ) -> float:
-    """Largest relative difference of compliances (k, k), found and true, free and with the contact held.
+    """Largest relative difference of compliances (k, k), found and true, free and with the contacts held.
 
-    units : (k,) roots of the static compliances; pull : (k,) the contact's force as a sum of the forces
+    units : (k,) roots of the static compliances; pulls : (k, N) each contact's force as a sum of the forces
     """
     scale = np.outer(units, units)
     worst = 0.0
     for found, true in pairs:
-        free, held = found / scale, _with_held(found, pull) / scale
-        true_free, true_held = true / scale, _with_held(true, pull) / scale
+        free, held = found / scale, _with_held(found, pulls) / scale
+        true_free, true_held = true / scale, _with_held(true, pulls) / scale
         # either may vanish at an antiresonance
         size = max(np.linalg.norm(true_free), np.linalg.norm(true_held))
         off = max(np.linalg.norm(free - true_free), np.linalg.norm(held - true_held))
@@ -225,21 +242,21 @@ def largest_error(
     return worst
 
 
-def _with_held(compliances: np.ndarray, pull: np.ndarray) -> np.ndarray:
-    """Compliances with the contact held by the force that leaves it no motion; zero if all do only that."""
-    across = compliances @ pull
-    left = compliances - np.outer(across, across) / (pull @ across)
+def _with_held(compliances: np.ndarray, pulls: np.ndarray) -> np.ndarray:
+    """Compliances with the contacts held by the forces that leave them no motion; zero if all do that."""
+    across = compliances @ pulls
+    left = compliances - across @ np.linalg.solve(pulls.T @ across, across.T)
     nothing = np.linalg.norm(left) <= 1e-9 * np.linalg.norm(compliances)
     return compliances if nothing else left
 
 
 def _own_frequencies(
-    mass: np.ndarray, stiffness: np.ndarray, contact: np.ndarray
+    mass: np.ndarray, stiffness: np.ndarray, contacts: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Natural frequencies of reduced matrices, free and held."""
     from scipy.linalg import eigh
 
-    basis = np.linalg.svd(contact[np.newaxis])[2][1:].T  # motions that leave the contact alone
+    basis = np.linalg.svd(contacts)[2][len(contacts) :].T  # motions that leave the contacts alone
     found = [eigh(stiffness, mass, eigvals_only=True)]
     if basis.size:
         found.append(eigh(basis.T @ stiffness @ basis, basis.T @ mass @ basis, eigvals_only=True))

@@ -2,6 +2,7 @@
 
 import zipfile
 import zlib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,12 @@ def read_npz(path: Path) -> dict[str, Any]:
     raise InputError(
         "matrices", f"must be an .npz file with arrays M, K and optionally C; got {path}: {reason}"
     )
+
+
+def write_npz(arrays: Mapping[str, np.ndarray], path: Path) -> None:
+    """Write arrays by their names, so that `read_npz` reads them."""
+    with open(path, "wb") as file:  # opened here, since numpy changes names without the ending
+        np.savez(file, **arrays)  # type: ignore[arg-type]
 
 
 def read_npy(path: Path) -> dict[str, Any]:

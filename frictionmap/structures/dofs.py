@@ -52,6 +52,11 @@ class Dofs:
         words = self.labels or ()
         return {_written(label): number for label, number in zip(words, self.numbers, strict=bool(words))}
 
+    @property
+    def written_labels(self) -> list[str]:
+        """The labels as text; empty without."""
+        return list(self._labelled)
+
     def row(self, number: int) -> int:
         """The row of a number, counted from 0."""
         return self._rows[number]

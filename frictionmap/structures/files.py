@@ -17,9 +17,10 @@ from .harwell_boeing import read_harwell_boeing
 from .market import BANNER, read_market
 from .nastran import read_op4, read_punch
 
-#: Names of the matrices, and of an array with numbers that degrees of freedom are called by.
+#: Names of the matrices, of an array with numbers that degrees of freedom are called by, and of one with
+#: their labels beside it.
 NAMES = ("M", "K", "C")
-DOFS = "dofs"
+DOFS, LABELS = "dofs", "labels"
 
 _SEVERAL: dict[str, Callable[[Path], dict[str, Matrix]]] = {
     ".op4": read_op4,
@@ -52,7 +53,7 @@ class GivenMatrices(NamedTuple):
 
     arrays: dict[str, Any]  # M, K and perhaps C, unchecked or sparse
     dofs: Any  # their numbers, if they were given, else None
-    labels: tuple[Label, ...] | None
+    labels: tuple[Label | str, ...] | None
     held: np.ndarray | None  # rows that a boundary condition holds, bool (n,)
     source: str  # names of the files, or ""
 
@@ -133,8 +134,18 @@ def _from_path(path: Path) -> GivenMatrices:
         return GivenMatrices(arrays, None, labels, None, path.name)
     every = _opened(path, read_mat_arrays if ending == ".mat" else read_npz)
     arrays, others = _by_name(every)
+    words = _labels(every, np.shape(arrays["M"])[0]) if LABELS in others else None
+    others = [name for name in others if words is None or name != LABELS]
     source = f"{path.name} ({', '.join(others)} not used)" if others else path.name
-    return GivenMatrices(arrays, every.get(DOFS), None, None, source)
+    return GivenMatrices(arrays, every.get(DOFS), words, None, source)
+
+
+def _labels(every: Mapping[str, Any], n: int) -> tuple[str, ...] | None:
+    """Labels beside the numbers of all degrees of freedom; None if the array of this name is another one."""
+    given = np.asarray(every[LABELS])
+    if DOFS not in every or given.dtype.kind != "U" or given.shape != (n,) or np.unique(given).size < n:
+        return None
+    return tuple(given.tolist())
 
 
 def _from_mapping(given: Mapping[Any, Any]) -> GivenMatrices:

@@ -28,15 +28,15 @@ class Reduction:
     asked: Reduce
     structure: Structure  # the whole one
     kept: tuple[int, ...]  # numbers of the degrees of freedom kept for their own sake
-    contact: np.ndarray  # c (n,) of the whole one
+    contacts: np.ndarray  # the vectors c of the contacts (N, n) of the whole one, linearly independent
     base: bool  # whether its base moves
     reduced: Reduced
     _found: Ranges[Accuracy] = field(default_factory=Ranges)
 
-    def like(self, asked: Reduce, kept: tuple[int, ...], contact: np.ndarray, base: bool) -> bool:
+    def like(self, asked: Reduce, kept: tuple[int, ...], contacts: np.ndarray, base: bool) -> bool:
         """Whether this reduction has the given settings."""
         same = self.asked == asked and self.kept == kept and self.base == base
-        return same and bool(np.array_equal(self.contact, contact))
+        return same and bool(np.array_equal(self.contacts, contacts))
 
     @cached_property
     def first_frequency(self) -> float:
@@ -56,7 +56,7 @@ class Reduction:
         if modes <= self.asked.modes:
             return None
         asked = self.asked._replace(modes=modes, allow=1.0)  # for comparison only, without a limit
-        return reduce_structure(self.structure, asked, self.kept, self.contact, self.base)
+        return reduce_structure(self.structure, asked, self.kept, self.contacts, self.base)
 
     def checked(self, low: float, high: float) -> Accuracy:
         """Its accuracy from one angular frequency to another, in the units of sqrt(K/M).
@@ -85,7 +85,7 @@ class Reduction:
         forces[rows, np.arange(len(rows))] = 1.0
         if self.base:  # what a base shakes
             forces = np.column_stack((forces, arrays["M"].sum(axis=1)))
-        return FullStructure(arrays["M"], arrays["K"], self.contact, forces)
+        return FullStructure(arrays["M"], arrays["K"], self.contacts, forces)
 
     def _refuse(self, comparison: Comparison, accuracy: Accuracy) -> None:
         whole = _with_sparse(self.structure)
@@ -139,7 +139,7 @@ def _with_sparse(structure: Structure) -> Structure:
 
 
 def reduce_structure(
-    structure: Structure, asked: Reduce, kept: tuple[int, ...], contact: np.ndarray, base: bool
+    structure: Structure, asked: Reduce, kept: tuple[int, ...], contacts: np.ndarray, base: bool
 ) -> Reduction:
     """Reduce a structure to kept degrees of freedom (numbers, increasing) and modes.
 
@@ -154,8 +154,8 @@ def reduce_structure(
             raise InputError(
                 "matrices",
                 f": cannot keep degree of freedom {structure.dofs.word(number)}: no mass in M; "
-                f"contact, load and reduce.keep need degrees of freedom with mass",
+                f"contacts, loads and reduce.keep need degrees of freedom with mass",
             )
     whole = _with_sparse(structure)
     fixed: FixedInterface = fixed_interface(whole, whole.dofs.rows(kept), asked.modes)
-    return Reduction(asked, structure, kept, contact, base, project(whole, fixed, asked.modes, base))
+    return Reduction(asked, structure, kept, contacts, base, project(whole, fixed, asked.modes, base))

@@ -84,7 +84,8 @@ def _dofs(found: GivenMatrices, n: int) -> tuple[Dofs, np.ndarray | None]:
             f": dofs must be {n} different integers >= 1, or names; got {checks.one_line(found.dofs)}",
         )
     order = np.argsort(given)
-    numbers = Dofs(tuple(int(number) for number in given[order]))
+    labels = None if found.labels is None else tuple(found.labels[place] for place in order)
+    numbers = Dofs(tuple(int(number) for number in given[order]), labels)
     return numbers, None if (np.diff(order) == 1).all() else order
 
 

@@ -4,7 +4,6 @@
 module             what is in it
 =================  ==============================================================================
 boundary_curves    beta_lim, T(2.26), and beta_stick over frequency from V, U, G, H, S, as arrays
-refinement         change of the boundaries of a reduced structure with all modes or many more
 boundaries         the same as a dataset, with features
 half_waves         motion over half a period from a maximum of z, and its largest modulus
 energy             work per cycle, and force transmitted to the ground

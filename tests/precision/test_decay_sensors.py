@@ -241,9 +241,7 @@ def test_what_a_slow_coupling_hides_is_refused():
     """A coupling of 1e-4 Hz answers within 3.2 s with a + b t and next to nothing else: offset and drift."""
     time, x = record("m/s^2")
     slow = {"unit": "m/s^2", "ac_coupling_Hz": 1e-4}
-    with pytest.raises(
-        fm.InputError, match="cannot identify offset and drift: not identifiable beside"
-    ):
+    with pytest.raises(fm.InputError, match="cannot identify offset and drift: not identifiable beside"):
         fm.identify.free_decay(time, x, drift=True, **slow)
     held = fm.identify.free_decay(time, x, drift=True, known={"drift": 0.0}, **slow)
     plain = fm.identify.free_decay(time, x, unit="m/s^2")

@@ -2,19 +2,23 @@
 
 import dataclasses
 import re
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
 import structure_files as written
 import xarray as xr
-from scipy.linalg import eigh
+from scipy.linalg import eigh, null_space
 from scipy.sparse import csr_array, diags_array, eye_array, kron
 from structures import chain_matrices
 
 import frictionmap as fm
 from frictionmap.command_line.cli import main
 from frictionmap.datasets.provenance import to_toml
-from frictionmap.theory.refinement import boundary_changes, with_more_modes
+from frictionmap.files.config import read_system
+from frictionmap.steady.refinement import boundary_changes, with_more_modes
+from frictionmap.structures.accuracy import FullStructure
 
 RNG = np.random.default_rng(20)
 CHAIN = chain_matrices(RNG.uniform(0.5, 2.0, 40), RNG.uniform(0.5, 2.0, 40))
@@ -351,14 +355,15 @@ def test_the_check_states_the_error_of_beta_lim(modes, factor):
     finer = with_more_modes(system)
     changes = boundary_changes(system, finer, AXIS, 1.0)
     assert changes.modes == changes.all_modes == 38
-    assert changes.beta_lim.share == pytest.approx(off.max(), rel=1e-6)
-    assert changes.beta_lim.r == AXIS[np.argmax(off)]
+    assert changes.of["beta_lim"].share == pytest.approx(off.max(), rel=1e-6)
+    assert changes.of["beta_lim"].r == AXIS[np.argmax(off)]
     stick = np.abs(found.beta_stick / true.beta_stick - 1.0).max().item()
-    assert changes.beta_stick.share == pytest.approx(stick, rel=1e-6)
+    assert changes.of["beta_stick"].share == pytest.approx(stick, rel=1e-6)
     words = found.attrs["reduction_check"]
+    most = changes.of["beta_lim"]
     assert words == "against all 38 modes beta_lim changes by " + (
-        f"up to {100.0 * changes.beta_lim.share:.0f} % (at r = {changes.beta_lim.r:.4g}), beta_stick "
-        f"{changes.beta_stick.describe()}"
+        f"up to {100.0 * most.share:.0f} % (at r = {most.r:.4g}), beta_stick "
+        f"{changes.of['beta_stick'].describe()}"
     )
 
 
@@ -436,3 +441,109 @@ def test_a_comparison_that_cannot_be_made_gives_the_reason():
     least = 1e-6 * system.modes.free.omega.max()
     words = fm.boundaries(system, [1.0001 * least]).attrs["reduction_check"]
     assert words.startswith("not compared with more modes: r must be 0, or >= ")
+
+
+# Several contacts, springs, loads of several harmonics
+
+LINE = {"M": np.diag([1.0, 2.0] * 7), "K": 2.0 * np.eye(14) - np.eye(14, k=1) - np.eye(14, k=-1)}
+JOINTS = [
+    {"masses": [14], "stiffness": 2.0},
+    {"kind": "between-masses", "masses": [4, 5]},
+    {"masses": [9], "ratio": 0.5},
+]
+LOADED = {
+    "contacts": JOINTS, "damping_ratios": 0.02, "frequency_scale": 0.3,
+    "load_harmonics": [{"n": 1, "mass": 2, "amplitude": 1.0}, {"n": 2, "mass": 7, "amplitude": 0.3}],
+}  # fmt: skip
+
+
+def of_line(modes, **settings):
+    return fm.System(matrices=LINE, reduce={"modes": modes, "allow": 1.0}, **(LOADED | settings))
+
+
+def test_contacts_and_loads_keep_their_masses_under_their_numbers():
+    system = of_line(0)
+    assert system.dofs.numbers == (2, 4, 5, 7, 9, 14)
+    offset = [0.0] * 14
+    offset[11] = 0.1
+    moved = of_line(0, load_offset=offset)
+    assert moved.dofs.numbers == (2, 4, 5, 7, 9, 12, 14)
+    np.testing.assert_array_equal(moved.contact_system.offset, [0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 0.0])
+    assert moved.contact_system.rows == list(range(7))
+    vector = [0.0] * 14
+    vector[9] = 1.0
+    by_vector = of_line(1, load_harmonics={1: vector, 3: [0.2 * one for one in vector]})
+    assert {4, 5, 9, 10, 14} <= set(by_vector.dofs.numbers)
+    assert len(by_vector.dofs.numbers) == 6
+
+
+def test_all_modes_give_the_map_of_the_whole_structure():
+    """A reduction to all modes changes the coordinates only."""
+    cells = {"r": [0.7, 1.9], "beta": [0.03, 0.2], "outputs": ["regime", "contact_amplitude", "amplitude"]}
+    whole = fm.sweep(fm.System(matrices=LINE, **LOADED), **cells)
+    system = of_line(8)
+    found = fm.sweep(system, **cells)
+    assert "reduction_check" not in found.attrs
+    np.testing.assert_array_equal(found.regime, whole.regime)
+    np.testing.assert_allclose(found.contact_amplitude, whole.contact_amplitude, rtol=1e-6)
+    own = whole.amplitude.sel(dof=found.dof.values)
+    np.testing.assert_allclose(found.amplitude, own, rtol=1e-6)
+    for name in ("beta_noslip", "beta_stick"):
+        np.testing.assert_allclose(found[name], whole[name], rtol=1e-8)
+
+
+def test_frequencies_with_all_contacts_held():
+    """Against a null space of all vectors by singular values: walls hold, contacts between masses join."""
+    vectors = np.zeros((4, 14))
+    vectors[0, 13] = vectors[1, 4] = vectors[2, 5] = vectors[3, 8] = 1.0
+    vectors[1, 3] = vectors[2, 4] = -1.0  # 4, 5 and 6 move as one
+    whole = FullStructure(csr_array(LINE["M"]), csr_array(LINE["K"]), vectors, np.eye(14)[:, :1])
+    basis = null_space(vectors)
+    squares = eigh(basis.T @ LINE["K"] @ basis, basis.T @ LINE["M"] @ basis, eigvals_only=True)
+    np.testing.assert_allclose(whole.frequencies(True, 9.0, 10, 14), np.sqrt(squares), rtol=1e-10)
+
+
+def test_the_stated_errors_are_those_with_contacts_free_and_held():
+    system = of_line(2)
+    accuracy = system.accuracy(np.array([0.5, 1.5]))
+    small, vectors = system.matrices.arrays, system.contact_system.vectors
+    rows = [number - 1 for number in system.dofs.numbers]
+    wide = np.zeros((3, 14))
+    wide[:, rows] = vectors
+    worst = 0.0
+    for own, true in ((np.eye(len(rows)), np.eye(14)), (null_space(vectors), null_space(wide))):
+        found, exact = (
+            np.sqrt(eigh(b.T @ m["K"] @ b, b.T @ m["M"] @ b, eigvals_only=True))
+            for b, m in ((own, small), (true, LINE))
+        )
+        inside = exact[exact <= 1.05 * 1.5 * 0.3]
+        worst = max(worst, np.abs(found[: inside.size] / inside - 1.0).max())
+    assert worst > 1e-4
+    assert accuracy.frequencies == pytest.approx(worst, rel=1e-6)
+    assert "effective masses of contacts are up to" in system.costs(np.array([0.5, 1.5]))["reduction"]
+    strict = {"modes": 2, "allow": 1e-5}
+    with pytest.raises(fm.InputError, match=r"reduce: cannot keep the error below 1e-05 .*modes? suffices?"):
+        fm.boundaries(fm.System(matrices=LINE, reduce=strict, **LOADED), [0.5, 1.5])
+
+
+def test_more_modes_are_compared_by_the_engine_of_several_contacts():
+    r = np.array([0.7, 1.9])
+    found, true = fm.boundaries(of_line(2), r), fm.boundaries(fm.System(matrices=LINE, **LOADED), r)
+    changes = boundary_changes(of_line(2), with_more_modes(of_line(2)), r, 1.0)
+    assert changes.modes == changes.all_modes == 8
+    assert list(changes.of) == ["beta_noslip", "beta_stick"]
+    for name, change in changes.of.items():
+        off = np.abs(found[name] / true[name] - 1.0).max().item()
+        assert off > 1e-5
+        assert change.share == pytest.approx(off, rel=1e-4)
+    assert found.attrs["reduction_check"] == changes.describe()
+    cell = fm.sweep(of_line(2), [0.7], [0.2], outputs=["regime"])
+    assert cell.attrs["reduction_check"].endswith("of 1 cells of a coarse map (mu = 1) change regime")
+
+
+def test_a_reduced_structure_is_written_with_its_contacts():
+    """The configuration in a file gives the same system again."""
+    ds = fm.boundaries(of_line(2), [0.7])
+    again = read_system(tomllib.loads(ds.attrs["config"])["system"], Path())
+    assert again.dofs.numbers == of_line(2).dofs.numbers
+    np.testing.assert_allclose(fm.boundaries(again, [0.7]).beta_stick, ds.beta_stick, rtol=1e-12)

@@ -42,13 +42,14 @@ def plot_forces(ds: xr.Dataset, over: str | None = None, **options: Unpack[Figur
 
     Nine colours show what each of both contacts does.  For mu = 1 the curves from which one of them sticks
     while the other moves are drawn as well; they come from steady states with that contact held, not from the
-    cells.
+    cells.  Of three or more contacts, the one along the axis is shown with the first other that beta changes,
+    without such curves.
 
     Parameters
     ----------
     ds : xarray.Dataset
         Maps along one further axis, as ``sweep(..., axes={"contacts[2].force": ...})`` returns them, with
-        `contact_regime` of two contacts, at one r and one mu.
+        `contact_regime` of two or more contacts, at one r and one mu.
     over : str, optional
         That axis, such as ``contacts_2_force``; needed where there is another one.
 
@@ -59,10 +60,14 @@ def plot_forces(ds: xr.Dataset, over: str | None = None, **options: Unpack[Figur
     Raises
     ------
     InputError
-        The dataset has no such axis, more than one r or mu, or other than two contacts.
+        The dataset has no such axis, more than one r or mu, or one contact.
     """
     check_options("plot_forces")
     ds, over = _checked(ds, over)
+    count, moved = ds.sizes["contact"], _moved_by_beta(ds)
+    number = int(over.split("_")[1]) - 1
+    other = next((k for k in moved if k != number), 1 if number == 0 else 0)
+    ds = ds.isel(contact=sorted((number, other)))
     first, second = ds["contact_regime"].values[..., 0], ds["contact_regime"].values[..., 1]
     found = _classes(first, second)
     names = _names(ds)
@@ -71,11 +76,12 @@ def plot_forces(ds: xr.Dataset, over: str | None = None, **options: Unpack[Figur
     ax = figure.subplots()
     beta, force = Grid(ds["beta"].values), Grid(ds[over].values)
     _draw_cells(ax, found, beta, force)
-    number = int(over.split("_")[1])
-    ax.set_xlabel(r"friction ratio $\beta$" + _of(names, 3 - number))
-    ax.set_ylabel(str(ds[over].attrs.get("long_name", over)) + _of(names, number))
+    ax.set_xlabel(rf"friction ratio $\beta$ ({names[int(other > number)]})")
+    ax.set_ylabel(f"{ds[over].attrs.get('long_name', over)} ({names[int(number > other)]})")
     ax.set_title(rf"$\mu$ = {float(ds['mu'][0]):g}", fontsize=points(10.0, "axes.titlesize"))
-    handles = _curves(ax, ds, over, beta, force)
+    handles = _limits(ax, ds, force)
+    if count == 2:
+        handles += _curves(ax, ds, over, beta, force)
     ax.set_xlim(*beta.limits)
     ax.set_ylim(*force.limits)
     assert isinstance(figure, Figure)
@@ -97,9 +103,10 @@ def _checked(ds: xr.Dataset, over: str | None) -> tuple[xr.Dataset, str]:
             f"over must be a further axis with a number of a contact (there: {there}); "
             f"got {checks.one_line(over)}"
         )
-    if "contact_regime" not in ds or ds.sizes.get("contact") != 2:
+    if "contact_regime" not in ds or ds.sizes.get("contact", 1) < 2:
         raise InputError(
-            f"ds of plot_forces must hold contact_regime of two contacts; got {ds.sizes.get('contact', 1)}"
+            f"ds of plot_forces must hold contact_regime of two or more contacts; got "
+            f"{ds.sizes.get('contact', 1)}"
         )
     for name in ("mu", "r"):
         if ds[name].size != 1:
@@ -136,10 +143,6 @@ def _names(ds: xr.Dataset) -> tuple[str, str]:
     return "contact 1", "contact 2"
 
 
-def _of(names: tuple[str, str], number: int) -> str:
-    return f" ({names[number - 1]})"
-
-
 def _draw_cells(ax: Axes, found: np.ndarray, beta: Grid, force: Grid) -> None:
     colours = ListedColormap([*PAIRS, UNRESOLVED_PAIR])
     ax.pcolormesh(
@@ -160,37 +163,50 @@ def _class_handles(found: np.ndarray, names: tuple[str, str]) -> list[Handle]:
     return handles
 
 
-def _curves(ax: Axes, ds: xr.Dataset, over: str, beta: Grid, force: Grid) -> list[Handle]:
-    """Draw the boundaries: no contact stops, all stick, one of them sticks."""
+def _moved_by_beta(ds: xr.Dataset) -> list[int]:
+    """Contacts, counted from 0, whose friction the grid's beta changes; all if the file does not say."""
+    system = _system(ds)
+    if system is None:
+        return list(range(ds.sizes["contact"]))
+    return np.flatnonzero(friction_lines(system, np.array([1.0]))[0][:, 0]).tolist()
+
+
+def _limits(ax: Axes, ds: xr.Dataset, force: Grid) -> list[Handle]:
+    """Draw the boundaries: no contact stops, all stick."""
     handles: list[Handle] = []
     for name, style in (("beta_lim", LIM), ("beta_stick", STICK)):
         if name in ds:
             values = ds[name].squeeze().values
             handles += ax.plot(values, force.values, path_effects=halo(), **style)
+    return handles
+
+
+def _curves(ax: Axes, ds: xr.Dataset, over: str, beta: Grid, force: Grid) -> list[Handle]:
+    """Draw the boundaries of two contacts from which one of them sticks."""
     system = _system(ds)
     if system is None or not (
         general_of(system).has_equal_friction(float(ds["mu"][0])) and has_limits(system)
     ):
-        return handles
+        return []
     r, number = float(ds["r"][0]), int(over.split("_")[1]) - 1
     part = over.removeprefix(f"contacts_{number + 1}_")
     if part != "force":
-        return handles
+        return []
     other = 1 - number
     lines, _ = friction_lines(system, np.array([1.0]))
     if lines[other, 0] == 0.0:  # the grid's beta moves neither
-        return handles
+        return []
     x = beta.at(np.linspace(0.0, 1.0, _SAMPLES))
     of_beta = lines.copy()
     of_beta[number] = 0.0
     along = holding_force(system, r, number, of_beta, x)
-    drawn = ax.plot(x, along, path_effects=halo(), **PARTIAL)
+    drawn: list[Handle] = [*ax.plot(x, along, path_effects=halo(), **PARTIAL)]
     y = force.at(np.linspace(0.0, 1.0, _SAMPLES))
     of_force = np.zeros_like(lines)
     of_force[number, 0] = 1.0
     across = (holding_force(system, r, other, of_force, y) - lines[other, 1]) / lines[other, 0]
     ax.plot(across, y, path_effects=halo(), **PARTIAL)
-    return handles + drawn
+    return drawn
 
 
 def _system(ds: xr.Dataset) -> System | None:

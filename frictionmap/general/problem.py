@@ -93,7 +93,7 @@ def _phasors(channels: list[Channel], orders: tuple[int, ...], r: np.ndarray) ->
     return np.ascontiguousarray(np.stack((table.real, -table.imag), axis=1))
 
 
-def _fastest(modal: ModalSystem, spring: np.ndarray) -> float:
+def fastest(modal: ModalSystem, spring: np.ndarray) -> float:
     """Bound on the rate of the fastest part of the motion, in t = tau/r.
 
     Holding contacts lowers natural frequencies or leaves them below the highest one; springs raise them.  The
@@ -107,12 +107,12 @@ def _fastest(modal: ModalSystem, spring: np.ndarray) -> float:
 
 def _rates(modal: ModalSystem, spring: np.ndarray, orders: tuple[int, ...], r: np.ndarray) -> np.ndarray:
     """Bound on the rate of the fastest part of the motion, (n_r,), in tau."""
-    return np.maximum(_fastest(modal, spring) / np.where(r > 0.0, r, 1.0), float(max(orders)))
+    return np.maximum(fastest(modal, spring) / np.where(r > 0.0, r, 1.0), float(max(orders)))
 
 
 def least_ratio(system: System) -> float:
     """Least r > 0 at which motions of a system are followed; see `_refuse_low`."""
-    return _fastest(modal_system(system), springs(general_of(system))) / _HIGHEST_RATE
+    return fastest(modal_system(system), springs(general_of(system))) / _HIGHEST_RATE
 
 
 def is_symmetric(general: ContactSystem) -> bool:

@@ -67,6 +67,7 @@ class Contact(Shown):
     wall_velocity: float = 0.0
     normal_load: Any = None
     wall_speed: float = 0.0
+    normal_record: Any = None
     nu: Mapping[int, complex] = field(init=False, repr=False, compare=False, default_factory=dict)
 
     def __post_init__(self) -> None:

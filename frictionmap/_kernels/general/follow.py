@@ -88,7 +88,7 @@ def _count(problem, motion, box, before, counts):
 
 
 @inner_kernel
-def _count_time(motion, counts, time):
+def count_time(motion, counts, time):
     """Add a time > 0 in which the pattern was the present one."""
     for j in range(motion.sense.size):
         if motion.sense[j] == 0:
@@ -106,7 +106,7 @@ def _forces_at(problem, motion, x, out):
 
 
 @kernel
-def _event(problem, row, friction, tau, motion, box, counts, event, derive):
+def pass_event(problem, row, friction, tau, motion, box, counts, event, derive):
     """Change the pattern at an event, count it, and carry the derivatives through it.
 
     Parameters
@@ -191,7 +191,7 @@ def _cross(problem, row, friction, begin, interval, length, motion, box, counts,
         if derive and step > 0.0:
             advance_tangent(problem, row, motion, step)
         if step > 0.0:
-            _count_time(motion, counts, step * h)
+            count_time(motion, counts, step * h)
             advance(problem, row, step, motion)
             for j in range(motion.fresh.size):
                 motion.fresh[j] = 0
@@ -202,13 +202,13 @@ def _cross(problem, row, friction, begin, interval, length, motion, box, counts,
         immediate = immediate + 1 if step == 0.0 else 0
         if immediate > _MOST_IMMEDIATE:
             return CHATTERS
-        if not _event(problem, row, friction, tau, motion, box, counts, event, derive):
+        if not pass_event(problem, row, friction, tau, motion, box, counts, event, derive):
             return UNDETERMINED
     return CHATTERS
 
 
 @kernel
-def _begin(problem, row, friction, motion):
+def prepare(problem, row, friction, motion):
     """Prepare the state and pattern in `motion`; False if the contacts do not determine their forces."""
     motion.clock[0] = math.nan
     for j in range(motion.idle.size):
@@ -236,7 +236,7 @@ def follow(problem, row, friction, part, motion, box, counts, record, derive):
     int : FOLLOWED, CHATTERS or UNDETERMINED
     """
     h = row.numbers[H]
-    if not _begin(problem, row, friction, motion):
+    if not prepare(problem, row, friction, motion):
         return UNDETERMINED
     intervals = row.intervals[0]
     # a state that Newton's method or other states led to, with their errors
@@ -248,7 +248,7 @@ def follow(problem, row, friction, part, motion, box, counts, record, derive):
     for k in range(intervals):
         interval = part * intervals + k
         if glides and glide(problem, row, friction, interval, motion):
-            _count_time(motion, counts, h)
+            count_time(motion, counts, h)
             if derive:
                 advance_tangent(problem, row, motion, 1.0)
             continue
@@ -273,7 +273,7 @@ def follow_to_section(problem, row, friction, begin, motion, box, counts, record
     int : FOLLOWED, CHATTERS or UNDETERMINED
     """
     h = row.numbers[H]
-    if not _begin(problem, row, friction, motion):
+    if not prepare(problem, row, friction, motion):
         return UNDETERMINED
     parts = (SECTION if begin <= SECTION else SECTION + 2.0 * math.pi) / h - begin / h
     for k in range(int(math.ceil(parts))):

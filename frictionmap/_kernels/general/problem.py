@@ -3,8 +3,9 @@
     r^2 q'' + r C q' + w^2 q = push L(tau) - chi^T f,   z = chi q - base L(tau),   |f| <= beta nu(tau)
 
 q are the modes of the structure with all contacts free, of unit modal mass.  L(tau) are the *channels*: the
-functions of time that drive anything, each a sum of harmonics.  A channel can push modes, move the wall of a
-contact, or vary its normal load: nu = 1 + normal L(tau).
+functions of time that drive anything, each a sum of harmonics, or, where there are none, a polynomial over
+each interval of a record.  A channel can push modes, move the wall of a contact, or vary its normal load:
+nu = 1 + normal L(tau).
 
 Time inside a step is x = (tau - tau_0)/h in [0, 1], and velocities are p = dq/dx = h q'.
 """
@@ -29,6 +30,9 @@ INVERSE = np.array([1.0 / ((k + 1.0) * (k + 2.0)) for k in range(TERMS)])
 
 #: Numbers kept per series: a whole number of vectors.
 WIDTH = 32
+
+#: Terms of a channel that is a polynomial over an interval of a record, in place of harmonics.
+PIECE_TERMS = 6
 
 #: k + 1: factors of a derivative.
 NEXT = np.arange(1.0, WIDTH + 1.0)

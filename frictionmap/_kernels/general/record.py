@@ -16,8 +16,8 @@ NOTHING, RANGES, STEPS, FORCES, EVENTS = 0, 1, 2, 3, 4
 
 _SLOPE, _VALUE = 5, 6  # rows of the scratch
 
-#: Rows of `ranges` and `forces`, and of `works`.
-LOW, HIGH = 0, 1
+#: Rows of ranges, and of `works`.
+LOW, HIGH, LOW_AT, HIGH_AT = 0, 1, 2, 3
 OF_FRICTION, OF_WALL = 0, 1
 
 #: Rows of `slips`.
@@ -114,6 +114,17 @@ def include(ends, i, value):
 
 
 @kernel
+def _include_at(ends, i, value, x):
+    """Widen a range; where `ends` has four rows, the last two take the place x of the new end."""
+    if ends.shape[0] == 4:
+        if value < ends[LOW, i]:
+            ends[LOW_AT, i] = x
+        if value > ends[HIGH, i]:
+            ends[HIGH_AT, i] = x
+    include(ends, i, value)
+
+
+@kernel
 def _is_still(series, at, size):
     """Whether a displacement varies by no more than rounding, beside itself and a motion of this size."""
     varies = 0.0
@@ -133,7 +144,7 @@ def _is_within(series, at, ends, i):
 
 
 @kernel
-def _keep_range(series, at, end, size, ends, i, scratch):
+def keep_range(series, at, end, size, ends, i, scratch):
     """Include a displacement or a force of the present step in its range.
 
     Parameters
@@ -141,13 +152,14 @@ def _keep_range(series, at, end, size, ends, i, scratch):
     series, at : series and the row of the displacement
     end : end of the step in x
     size : size beside which its variation may be rounding error
-    ends, i : lowest and highest values (2, ...), and the place in them
+    ends, i : lowest and highest values (2, ...), or these and their places in the step (4, ...), and the
+        column in them
     scratch : scratch
     """
-    include(ends, i, series[at, 0])
+    _include_at(ends, i, series[at, 0], 0.0)
     if _is_within(series, at, ends, i) or _is_still(series, at, size):
         return
-    include(ends, i, value_at(series, at, end))
+    _include_at(ends, i, value_at(series, at, end), end)
     sign = 1.0
     for k in range(1, LONG):
         if series[at, k] != 0.0:
@@ -162,7 +174,7 @@ def _keep_range(series, at, end, size, ends, i, scratch):
         scratch[_SLOPE, k] = sign * (k + shift + 1.0) * series[at, k + shift + 1]
     x = first_zero(scratch, _SLOPE)
     while x < end:
-        include(ends, i, value_at(series, at, x))
+        _include_at(ends, i, value_at(series, at, x), x)
         sign = -sign
         x = next_turn(series, at, x, sign, scratch, _SLOPE)
 
@@ -220,7 +232,7 @@ def join_slips(record, halves):
 
 
 @kernel
-def _keep_works(problem, row, motion, end, record, first):
+def keep_works(problem, row, motion, end, record, first):
     """Add the sliding distances and works of the present step."""
     contacts = problem.spring.size
     series = motion.series
@@ -267,7 +279,7 @@ def _keep_forces(problem, motion, end, record):
         force, nu = (first + 2 * contacts + j) * WIDTH, (first + 3 * contacts + j) * WIDTH
         for k in range(0, WIDTH, LANES):
             store(load(series, force + k) + load(series, nu + k) * limit, scratch, _VALUE * WIDTH + k)
-        _keep_range(scratch, _VALUE, end, 0.0, record.forces, i, scratch)
+        keep_range(scratch, _VALUE, end, 0.0, record.forces, i, scratch)
 
 
 @kernel
@@ -363,8 +375,8 @@ def record_step(problem, row, motion, end, record):
             include(record.ranges, j, series[first + j, 0])
             include(record.ranges, j, value_at(series, first + j, end))
         else:
-            _keep_range(series, first + j, end, row.numbers[SIZE], record.ranges, j, scratch)
-    _keep_works(problem, row, motion, end, record, first)
+            keep_range(series, first + j, end, row.numbers[SIZE], record.ranges, j, scratch)
+    keep_works(problem, row, motion, end, record, first)
     for i in range(record.masses.shape[0]):
         for k in range(0, WIDTH, LANES):
             place = filled(0.0)
@@ -372,4 +384,4 @@ def record_step(problem, row, motion, end, record):
                 place = place + load(series, m * WIDTH + k) * record.masses[i, m]
             store(place, scratch, _VALUE * WIDTH + k)
         size = _finish_row(problem, row, motion, record, i)
-        _keep_range(scratch, _VALUE, end, size, record.ranges, contacts + i, scratch)
+        keep_range(scratch, _VALUE, end, size, record.ranges, contacts + i, scratch)

@@ -8,7 +8,7 @@ from ..compiler import entry, kernel
 from ..compiler.vectors import LANES, filled, load, store
 from .laws.contact import force_weight
 from .laws.kinds import state_size
-from .problem import LONG, SECTION, SIZE, TERMS, TURN, WIDTH, H, Motion, Parts, R, Row, padded
+from .problem import LONG, PIECE_TERMS, SECTION, SIZE, TERMS, TURN, WIDTH, H, Motion, Parts, R, Row, padded
 
 #: Intervals of a period whose load is kept, and patterns whose derivatives are.
 _KEPT_INTERVALS = 512
@@ -142,10 +142,21 @@ def _fill_channels(problem, row, tau, series, first):
 
 
 @kernel
-def set_row(problem, i, row):
-    """Fill the constants of r[i]."""
-    row.intervals[0] = _intervals(problem, i)
-    h = math.pi / row.intervals[0]
+def _shift_pieces(row, x, series, first, channels):
+    """Fill the series of channels that are polynomials over the interval, kept in `row.loads`, from x on."""
+    for d in range(channels):
+        for k in range(0, WIDTH, LANES):
+            store(load(row.loads, d * WIDTH + k), series, (first + d) * WIDTH + k)
+        if x == 0.0:
+            continue
+        for i in range(PIECE_TERMS - 1):
+            for k in range(PIECE_TERMS - 2, i - 1, -1):
+                series[first + d, k] += x * series[first + d, k + 1]
+
+
+@kernel
+def set_interval(problem, i, row, h):
+    """Fill the constants of r[i] for intervals of the length h, all but those of the load."""
     row.numbers[H], row.numbers[R], row.numbers[SIZE] = h, problem.r[i], problem.sizes[i]
     contacts, modes = problem.chi.shape
     _set_modes(problem, row, h / problem.r[i])
@@ -156,16 +167,24 @@ def set_row(problem, i, row):
                 row.mobility[a, b] += problem.chi[a, m] * row.reaction[b, m]
     for j in range(contacts):
         row.yields[j] = force_weight(problem, row, j)
-    _set_waves(problem, row)
-    for part in range(2):
-        for d in range(problem.push.shape[1]):
-            for n in range(problem.orders.size):
-                row.phasors[part, d, n] = problem.phasors[i, part, d, n]
     for k in range(row.patterns.size):
         row.patterns[k] = 0
         row.parts.known[k] = 0
     for k in range(row.parts.loads_known.size):
         row.parts.loads_known[k] = 0
+
+
+@kernel
+def set_row(problem, i, row):
+    """Fill the constants of r[i]."""
+    row.intervals[0] = _intervals(problem, i)
+    h = math.pi / row.intervals[0]
+    set_interval(problem, i, row, h)
+    _set_waves(problem, row)
+    for part in range(2):
+        for d in range(problem.push.shape[1]):
+            for n in range(problem.orders.size):
+                row.phasors[part, d, n] = problem.phasors[i, part, d, n]
     channels = problem.push.shape[1]
     if 2 * row.intervals[0] * channels <= row.loads.shape[0]:
         for k in range(2 * row.intervals[0]):
@@ -179,7 +198,7 @@ def set_channels(problem, row, tau, interval, motion):
     Parameters
     ----------
     problem, row : Problem, Row
-    tau : phase of the load
+    tau : phase of the load; without harmonics the time since the beginning of the interval of a record
     interval : of the row, if tau is its beginning; else -1
     motion : Motion
     """
@@ -187,6 +206,9 @@ def set_channels(problem, row, tau, interval, motion):
         return
     motion.clock[0] = tau
     modes, channels = problem.push.shape
+    if problem.orders.size == 0:
+        _shift_pieces(row, tau / row.numbers[H], motion.series, modes, channels)
+        return
     if interval < 0 or 2 * row.intervals[0] * channels > row.loads.shape[0]:
         _fill_channels(problem, row, tau, motion.series, modes)
         return

@@ -1,0 +1,12 @@
+"""Motions in time under records: loads and base motions that are polynomials over every interval.
+
+The structure, its contacts, the series of a step and the events are those of `general`.
+
+==========  ====================================================================
+module      what is in it
+==========  ====================================================================
+kept        peaks, works, slides, events and samples of a motion in time
+asleep      when a motion under no load has ended for all contacts
+motion      the motion under a record, and after it
+==========  ====================================================================
+"""

@@ -1,0 +1,214 @@
+"""What is kept of a motion in time: peaks, works, slides, events, states at samples."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiler import entry, kernel
+from ..compiler.vectors import LANES, filled, load, store
+from ..general.crossings import value_at
+from ..general.problem import PIECE_TERMS, SIZE, TERMS, WIDTH, H, P, Q, first_contact_row, force_row
+from ..general.record import HIGH_AT, LOW_AT, Record, keep_range, keep_works
+
+STOP, START, TURN = 0, 1, 2
+
+#: Columns of `events`.
+TIME, CONTACT, KIND = 0, 1, 2
+
+#: Rows of `slides`: sliding distance of the present slide and of the largest one.
+PRESENT, LARGEST = 0, 1
+
+#: Places in `works`.
+OF_LOAD, OF_BASE = 0, 1
+
+#: Row of the scratch for the quantity watched.
+_VALUE = 6
+
+
+class Kept(NamedTuple):
+    """What is kept of a motion of m modes, N contacts, D channels.
+
+    A quantity that is watched is a sum of modes, their velocities, forces in contacts, and channels.
+    """
+
+    weights: np.ndarray  # (Q, 2 m + N + D) of the quantities
+    peaks: np.ndarray  # (4, Q) lowest, highest, and where in the step they are
+    times: np.ndarray  # (2, Q) when they are
+    record: Record  # sliding distances and works of the contacts
+    works: np.ndarray  # (2,) of the load, and of the walls that move with the base
+    slides: np.ndarray  # (2, N)
+    changes: np.ndarray  # (3, N) stops, starts, turns
+    events: np.ndarray  # (most, 3)
+    states: np.ndarray  # (most, 1 + 2 m + N + D) time, q, q', f, L
+    senses: np.ndarray  # (most, N)
+    counts: np.ndarray  # (2,) int: events and states there were; more than `most` do not fit
+    forces: np.ndarray  # (N,) forces in the contacts at the end of the interval
+    clock: np.ndarray  # (1,) time at the beginning of the interval
+
+
+@entry
+def make_kept(problem, weights, record, most):
+    """Allocate it for `most` events and as many states.
+
+    weights : see `Kept`; record : of no masses, see `general.record.make_record`
+    """
+    contacts, modes = problem.chi.shape
+    columns = 1 + 2 * modes + contacts + problem.push.shape[1]
+    peaks = np.zeros((4, weights.shape[0]))
+    peaks[0], peaks[1] = np.inf, -np.inf
+    return Kept(
+        weights, peaks, np.zeros((2, weights.shape[0])), record, np.zeros(2), np.zeros((2, contacts)),
+        np.zeros((3, contacts)), np.zeros((most, 3)), np.zeros((most, columns)),
+        np.zeros((most, contacts), np.int8), np.zeros(2, np.int64),
+        np.zeros(contacts), np.zeros(1),
+    )  # fmt: skip
+
+
+@kernel
+def _fill_watched(problem, row, motion, kept, i):
+    """Fill the series of quantity i in the scratch."""
+    contacts, modes = problem.chi.shape
+    series, scratch, weights = motion.series, motion.scratch, kept.weights
+    first = first_contact_row(problem)
+    for k in range(0, WIDTH, LANES):
+        store(filled(0.0), scratch, _VALUE * WIDTH + k)
+    for m in range(modes):
+        place, rate = weights[i, m], weights[i, modes + m] / row.numbers[H]
+        if place != 0.0:
+            for k in range(0, WIDTH, LANES):
+                at = _VALUE * WIDTH + k
+                store(load(scratch, at) + load(series, m * WIDTH + k) * place, scratch, at)
+        if rate != 0.0:
+            for k in range(TERMS + 1):
+                scratch[_VALUE, k] += rate * (k + 1.0) * series[m, k + 1]
+    for j in range(contacts):
+        share = weights[i, 2 * modes + j]
+        if share != 0.0:
+            for k in range(TERMS):
+                scratch[_VALUE, k] += share * series[first + 2 * contacts + j, k]
+    for d in range(problem.push.shape[1]):
+        share = weights[i, 2 * modes + contacts + d]
+        if share != 0.0:
+            for k in range(PIECE_TERMS):
+                scratch[_VALUE, k] += share * series[modes + d, k]
+
+
+@kernel
+def _keep_peaks(problem, row, motion, begin, end, kept):
+    """Include the watched quantities of the present step, which begins at `begin` in the interval."""
+    for i in range(kept.weights.shape[0]):
+        _fill_watched(problem, row, motion, kept, i)
+        kept.peaks[LOW_AT, i] = kept.peaks[HIGH_AT, i] = -1.0
+        keep_range(motion.scratch, _VALUE, end, row.numbers[SIZE], kept.peaks, i, motion.scratch)
+        for side in range(2):
+            at = kept.peaks[LOW_AT + side, i]
+            if at >= 0.0:
+                kept.times[side, i] = kept.clock[0] + (begin + at) * row.numbers[H]
+
+
+@kernel
+def _integral(rate, place, end):
+    """Integral over [0, end] of the derivative of the first series, of PIECE_TERMS, times the second.
+
+    rate, place : (WIDTH,) series
+    """
+    sum_ = 0.0
+    for i in range(PIECE_TERMS - 1):
+        if rate[i + 1] != 0.0:
+            part = 0.0
+            for k in range(TERMS - 1, -1, -1):
+                part = part * end + place[k] / (i + k + 1.0)
+            sum_ += (i + 1.0) * rate[i + 1] * part * end ** (i + 1)
+    return sum_
+
+
+@kernel
+def _fill_pushed(problem, motion, d):
+    """Fill the series of the displacement that a channel pushes in the scratch; whether it pushes any."""
+    scratch, pushes = motion.scratch, False
+    for k in range(WIDTH):
+        scratch[_VALUE, k] = 0.0
+    for m in range(problem.squares.size):
+        push = problem.push[m, d]
+        if push != 0.0:
+            pushes = True
+            for k in range(0, WIDTH, LANES):
+                at = _VALUE * WIDTH + k
+                store(load(scratch, at) + load(motion.series, m * WIDTH + k) * push, scratch, at)
+    return pushes
+
+
+@kernel
+def _keep_works(problem, row, motion, end, kept):
+    """Add the works of the present step, and the sliding distances."""
+    contacts, modes = problem.chi.shape
+    channels = problem.push.shape[1]
+    series, scratch, first = motion.series, motion.scratch, first_contact_row(problem)
+    for j in range(contacts):
+        kept.slides[PRESENT, j] -= kept.record.distance[j]
+    keep_works(problem, row, motion, end, kept.record, first)
+    for j in range(contacts):
+        kept.slides[PRESENT, j] += kept.record.distance[j]
+        if motion.sense[j] != 0:
+            kept.slides[LARGEST, j] = max(kept.slides[LARGEST, j], kept.slides[PRESENT, j])
+    for d in range(channels):
+        wall = series[modes + d]
+        if _fill_pushed(problem, motion, d):
+            pushed = scratch[_VALUE]
+            ends = value_at(scratch, _VALUE, end) * value_at(series, modes + d, end) - pushed[0] * wall[0]
+            kept.works[OF_LOAD] += ends - _integral(wall, pushed, end)
+        for j in range(contacts):
+            if problem.base[j, d] != 0.0:
+                force = series[force_row(problem, j)]
+                kept.works[OF_BASE] -= problem.base[j, d] * _integral(wall, force, end)
+
+
+@kernel
+def keep_step(problem, row, motion, begin, end, kept):
+    """Include the present step, from `begin` in the interval, up to `end` in x after it."""
+    _keep_peaks(problem, row, motion, begin, end, kept)
+    _keep_works(problem, row, motion, end, kept)
+
+
+@kernel
+def keep_state(problem, row, motion, begin, x, kept):
+    """Keep the state at x of the present step, which begins at `begin` in the interval."""
+    k = kept.counts[1]
+    kept.counts[1] = k + 1
+    if k >= kept.states.shape[0]:
+        return
+    contacts, modes = problem.chi.shape
+    kept.states[k, 0] = kept.clock[0] + (begin + x) * row.numbers[H]
+    for m in range(modes):
+        kept.states[k, 1 + m] = motion.state[Q, m]
+        kept.states[k, 1 + modes + m] = motion.state[P, m] / row.numbers[H]
+    for j in range(contacts):
+        kept.states[k, 1 + 2 * modes + j] = value_at(motion.series, force_row(problem, j), x)
+        kept.senses[k, j] = motion.sense[j]
+    for d in range(problem.push.shape[1]):
+        kept.states[k, 1 + 2 * modes + contacts + d] = value_at(motion.series, modes + d, x)
+
+
+@kernel
+def keep_ends(problem, motion, x, kept):
+    """Keep the forces in the contacts at x of the present step."""
+    for j in range(motion.sense.size):
+        kept.forces[j] = value_at(motion.series, force_row(problem, j), x)
+
+
+@kernel
+def list_changes(row, motion, before, begin, kept):
+    """List the contacts whose sense is not that of `before`, at `begin` in the interval."""
+    for j in range(motion.sense.size):
+        old, new = int(before[j]), motion.sense[j]
+        if old == new:
+            continue
+        kind = STOP if new == 0 else (START if old == 0 else TURN)
+        kept.changes[kind, j] += 1.0
+        kept.slides[PRESENT, j] = 0.0
+        k = kept.counts[0]
+        kept.counts[0] = k + 1
+        if k < kept.events.shape[0]:
+            kept.events[k, TIME] = kept.clock[0] + begin * row.numbers[H]
+            kept.events[k, CONTACT] = j
+            kept.events[k, KIND] = kind

@@ -1,0 +1,71 @@
+"""The structure with all contacts held, under no load: its place of rest, and whether it moves again."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._kernels.general.problem import Problem
+from .._kernels.history.asleep import Bed
+
+#: Squared frequencies of held modes below this share of the largest are those of motions that nothing
+#: restores, computed with rounding error.
+_FREE = 1e-13
+
+
+class Held(NamedTuple):
+    """The structure with all contacts held; s is the state q, q', f of springs."""
+
+    bed: Bed
+    rest: np.ndarray  # (m, 2 m + N) modes at the place of rest
+
+
+def _basis(rigid: np.ndarray, modes: int) -> np.ndarray:
+    """Orthonormal motions (m, h) that the held rigid contacts leave."""
+    if not rigid.size:
+        return np.eye(modes)
+    left, sizes, right = np.linalg.svd(rigid)
+    rank = int((sizes > sizes[0] * 1e-12).sum())
+    return right[rank:].T
+
+
+def held(problem: Problem) -> Held:
+    """Build it from a system in modal coordinates of unit mass."""
+    contacts, modes = problem.chi.shape
+    size = 2 * modes + contacts
+    elastic = problem.spring > 0.0
+    chi_r, chi_e, kt = problem.chi[~elastic], problem.chi[elastic], problem.spring[elastic]
+    q = np.eye(modes, size)
+    p = np.eye(modes, size, modes)
+    f = np.eye(contacts, size, 2 * modes)[elastic]
+    basis = _basis(chi_r, modes)
+    stiffness = basis.T @ (np.diag(problem.squares) + chi_e.T @ (kt[:, np.newaxis] * chi_e)) @ basis
+    squares, shapes = np.linalg.eigh(stiffness) if basis.shape[1] else (np.empty(0), np.empty((0, 0)))
+    restored = squares > _FREE * max(squares.max(initial=0.0), problem.squares.max(initial=0.0))
+    shapes_r = basis @ shapes[:, restored]
+    omega = np.sqrt(squares[restored])
+    pull = shapes_r.T @ (problem.squares[:, np.newaxis] * q + chi_e.T @ f)
+    away = pull / (omega**2)[:, np.newaxis]  # held modes, from their place of rest
+    rest = q - shapes_r @ away
+    springs = f - kt[:, np.newaxis] * (chi_e @ (q - rest))
+    vibration = np.vstack((omega[:, np.newaxis] * away, (basis @ shapes).T @ p))
+    forces, gains = np.zeros((contacts, size)), np.zeros(contacts)
+    forces[elastic] = springs
+    gains[elastic] = np.linalg.norm(kt[:, np.newaxis] * (chi_e @ shapes_r) / omega, axis=1)
+    if chi_r.size:
+        mobility = chi_r @ chi_r.T
+        load = problem.squares[:, np.newaxis] * rest + chi_e.T @ springs
+        forces[~elastic] = -np.linalg.solve(mobility, chi_r @ load)
+        by_place = (np.diag(problem.squares) + chi_e.T @ (kt[:, np.newaxis] * chi_e)) @ shapes_r / omega
+        by_rate = problem.damping @ basis @ shapes
+        both = np.linalg.solve(mobility, chi_r @ np.hstack((by_place, by_rate)))
+        paired = np.zeros((both.shape[0], by_rate.shape[1]))
+        paired[:, restored] = both[:, : omega.size]
+        gains[~elastic] = np.sqrt((paired**2).sum(axis=1) + (both[:, omega.size :] ** 2).sum(axis=1))
+    belt = bool(problem.belt.any())
+    return Held(
+        Bed(
+            np.ascontiguousarray(vibration), np.ascontiguousarray(forces), gains,
+            np.array([not belt], dtype=np.int64),
+        ),
+        np.ascontiguousarray(rest),
+    )  # fmt: skip

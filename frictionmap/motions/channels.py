@@ -1,0 +1,160 @@
+"""What a record drives: loads on the masses, walls of contacts, normal loads."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import checks
+from ..errors import InputError
+from ..model.general import ContactSystem
+from ..model.system import System
+from .pieces import Pieces, derivative, extremes, integral, on_times
+from .record import Record
+
+
+class Channel(NamedTuple):
+    """A function of time and what it drives, see `_kernels.general.problem`."""
+
+    pieces: Pieces
+    push: np.ndarray  # (n,) load on the masses
+    base: np.ndarray  # (N,) displacement of the walls
+    normal: np.ndarray  # (N,) variation of the normal loads
+    moves_on: bool = False  # whether it goes on at its last rate after the record, as a base does
+
+
+class Drive(NamedTuple):
+    """All channels of a record on common intervals; times are dimensionless."""
+
+    times: np.ndarray  # (K + 1,) the samples; the last one is the end of the record
+    steps: np.ndarray  # (K + 1,) lengths of the intervals, the last one of those after the record
+    terms: np.ndarray  # (K + 1, D, PIECE_TERMS) polynomials; the last ones are those after the record
+    jumps: np.ndarray  # (K + 1,) bool: whether a channel jumps where an interval begins
+    push: np.ndarray  # (n, D)
+    base: np.ndarray  # (N, D)
+    normal: np.ndarray  # (N, D)
+    acceleration: np.ndarray  # (D,) 1 where the channel is the acceleration of the base
+
+
+class Scale(NamedTuple):
+    """Factors that make a record dimensionless."""
+
+    time: float  # omega_1
+    value: float
+
+
+def _force(system: System, record: Record, contacts: int, pieces: Pieces) -> list[Channel]:
+    vector = np.zeros(system.n)
+    if record.vector is not None:
+        if len(record.vector) != system.n:
+            raise InputError(
+                "vector", f"must have one number per mass ({system.n}); got {len(record.vector)}"
+            )
+        vector[:] = record.vector
+    else:
+        mass = system.load_mass if record.mass is None else record.mass
+        vector[system.dofs.row(system.dofs.number(1 if mass is None else mass, "mass"))] = 1.0
+    still = np.zeros(contacts)
+    return [Channel(pieces, vector, still, still)]
+
+
+def _motion_of_base(record: Record, given: Pieces) -> tuple[Pieces, Pieces, Pieces]:
+    """Displacement, velocity and acceleration of the base; it begins at rest, at 0 where it is not given."""
+    if record.quantity == "displacement":
+        velocity = derivative(given)
+        return given, velocity, derivative(velocity)
+    if record.quantity == "velocity":
+        return integral(given), given, derivative(given)
+    velocity = integral(given)
+    return integral(velocity), velocity, given
+
+
+def is_relative_damping(system: System) -> bool:
+    """Whether the damping sees velocities relative to the base: a force-excited structure has no other."""
+    return system.excitation != "base" or system.damping_reference == "base"
+
+
+def _base(system: System, general: ContactSystem, record: Record, pieces: Pieces) -> list[Channel]:
+    place, rate, acceleration = _motion_of_base(record, pieces)
+    iota, still = np.ones(system.n), np.zeros(general.count)
+    found = [Channel(acceleration, -system.modes.mass @ iota, still, still)]
+    # a wall at rest moves by -u in coordinates relative to the base
+    walls = np.array([float(group.base) - group.vector @ iota for group in general.groups])
+    if walls.any():
+        found.append(Channel(place, np.zeros(system.n), walls, still, record.quantity != "displacement"))
+    if not is_relative_damping(system) and system.modes.damping.any():
+        push = -system.modes.damping @ iota
+        found.append(Channel(rate, push, still, still, record.quantity != "displacement"))
+    return found
+
+
+def _normal_loads(general: ContactSystem, time: float) -> list[Channel]:
+    found = []
+    for j, group in enumerate(general.groups):
+        record = group.first.normal_record
+        if record is not None:
+            pieces = _scaled(record.pieces, Scale(time, 1.0))
+            least = 1.0 + min(0.0, extremes(pieces)[0])
+            if least < 0.0:
+                raise InputError(
+                    f"contacts[{j + 1}].normal_record",
+                    f"must leave 1 + its value >= 0, as contacts that separate are another model; "
+                    f"got {least:.3g} at its least",
+                )
+            n = group.vector.size
+            found.append(Channel(pieces, np.zeros(n), np.zeros(general.count), np.eye(general.count)[j]))
+    return found
+
+
+def _scaled(pieces: Pieces, scale: Scale) -> Pieces:
+    return Pieces(pieces.times * scale.time, pieces.steps * scale.time, pieces.terms * scale.value)
+
+
+def _common(channels: list[Channel]) -> tuple[np.ndarray, np.ndarray]:
+    """Ends and lengths of intervals in which every channel is one polynomial."""
+    first = channels[0].pieces
+    if all(np.array_equal(one.pieces.times, first.times) for one in channels):
+        return first.times, first.steps
+    times = np.unique(np.concatenate([one.pieces.times for one in channels]))
+    return times, np.diff(times)
+
+
+def drive_of(system: System, record: Record, scale: Scale) -> Drive:
+    """Collect what a record drives in a system."""
+    general = system.contact_system
+    pieces = _scaled(record.pieces, scale)
+    if record.quantity == "force":
+        channels = _force(system, record, general.count, pieces)
+    else:
+        channels = _base(system, general, record, pieces)
+    acceleration = np.zeros(len(channels))
+    acceleration[0] = record.quantity != "force"
+    normal = _normal_loads(general, scale.time)
+    channels += normal
+    times, steps = _common(channels)
+    terms = [on_times(one.pieces, times, steps).terms for one in channels]
+    if all(one.pieces.times is times for one in channels):
+        terms = [one.pieces.terms for one in channels]
+    after, step = [], float(steps.max())
+    for one, own in zip(channels, terms, strict=True):
+        last = np.zeros((1, own.shape[1]))
+        if one.base.any() or one.moves_on:
+            last[0, 0] = own[-1].sum()
+            if one.moves_on and one.base.any():
+                last[0, 1] = own[-1] @ np.arange(own.shape[1]) / steps[-1] * step
+        after.append(last)
+    table = np.stack([np.vstack(pair) for pair in zip(terms, after, strict=True)], axis=1)
+    sizes = np.abs(table).max(axis=(0, 2))
+    gaps = np.abs(table[1:, :, 0] - table[:-1].sum(axis=2))
+    # what the rounding of a sum of the terms leaves is no jump
+    jumps = np.concatenate(([False], (gaps > 1e-13 * sizes).any(axis=1)))
+    return Drive(
+        times, np.append(steps, step), np.ascontiguousarray(table), jumps,
+        np.array([one.push for one in channels]).T, np.array([one.base for one in channels]).T,
+        np.array([one.normal for one in channels]).T,
+        np.concatenate((acceleration, np.zeros(len(normal)))),
+    )  # fmt: skip
+
+
+def checked_record(given: object, name: str) -> Record:
+    """Check that a value is a record."""
+    return checks.instance(given, name, Record)

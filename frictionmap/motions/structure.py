@@ -1,0 +1,97 @@
+"""A system under channels as arrays for the kernels, and the quantities that are watched of it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._kernels.general.problem import Problem
+from ..general.problem import ModalSystem, fastest, modal_system, refuse_loop, springs, ties
+from ..model.general import in_general_form
+from ..model.system import System
+from .bed import Held, held
+from .channels import Drive
+
+
+class Structure(NamedTuple):
+    """A system in modal coordinates."""
+
+    system: System
+    modal: ModalSystem
+    spring: np.ndarray  # (N,)
+    rate: float  # bound on the rate of free motion
+
+
+class Watched(NamedTuple):
+    """Where quantities stand in the table of weights."""
+
+    weights: np.ndarray  # (Q, 2 m + N + D)
+    places: dict[str, slice]
+
+
+def structure_of(system: System) -> Structure:
+    """Modes of a system in the form that the general engine takes."""
+    system = in_general_form(system)
+    general = system.contact_system
+    refuse_loop(general)
+    modal = modal_system(system)
+    spring = springs(general)
+    return Structure(system, modal, spring, fastest(modal, spring))
+
+
+def problem_of(structure: Structure, drive: Drive) -> Problem:
+    """The arrays of a system under the channels of a record."""
+    modal, general = structure.modal, structure.system.contact_system
+    push = np.ascontiguousarray(modal.phi.T @ drive.push)
+    largest = np.abs(drive.terms).sum(axis=2).max(axis=0)
+    moved = np.array([float(group.base) for group in general.groups])
+    belt = np.array([group.first.wall_velocity for group in general.groups])
+    size = float((np.abs(push) @ largest / (modal.squares + 1.0)).max())
+    return Problem(
+        modal.squares, modal.damping, bool((modal.damping != np.diag(np.diag(modal.damping))).any()),
+        np.ascontiguousarray(modal.chi), push, np.ascontiguousarray(drive.base),
+        np.ascontiguousarray(drive.normal), structure.spring, belt,
+        ties(general.vectors, moved, belt, structure.spring), np.empty(0), np.ones(1),
+        np.empty((1, 2, drive.push.shape[1], 0)), np.array([structure.rate]),
+        np.array([size if size > 0.0 else 1.0]), False,
+    )  # fmt: skip
+
+
+def held_of(problem: Problem) -> Held:
+    """The structure with all contacts held."""
+    return held(problem)
+
+
+def watched_of(structure: Structure, problem: Problem, drive: Drive) -> Watched:
+    """The quantities whose peaks are kept, as sums of q, q', f and L."""
+    modal = structure.modal
+    n, m = modal.phi.shape
+    contacts, channels = structure.spring.size, drive.push.shape[1]
+    q, p = np.eye(m, 2 * m + contacts + channels), np.eye(m, 2 * m + contacts + channels, m)
+    f = np.eye(contacts, 2 * m + contacts + channels, 2 * m)
+    load = np.eye(channels, 2 * m + contacts + channels, 2 * m + contacts)
+    inertia = (
+        -problem.squares[:, np.newaxis] * q - problem.damping @ p + problem.push @ load - modal.chi.T @ f
+    )
+    restoring = modal.stiffness @ modal.phi @ q + modal.viscous @ modal.phi @ p
+    rows = {
+        "x": modal.phi @ q,
+        "z": problem.chi @ q - problem.base @ load,
+        "acceleration": modal.phi @ inertia + np.outer(np.ones(n), drive.acceleration @ load),
+        "friction": f,
+        "base_force": -restoring.sum(axis=0, keepdims=True),
+        "spring_force": _spring_forces(structure) @ q,
+    }
+    places, begin = {}, 0
+    for name, row in rows.items():
+        places[name] = slice(begin, begin + len(row))
+        begin += len(row)
+    return Watched(np.ascontiguousarray(np.vstack(list(rows.values()))), places)
+
+
+def _spring_forces(structure: Structure) -> np.ndarray:
+    """Forces in the springs of a chain by the modes, (n, m); none of matrices."""
+    system, phi = structure.system, structure.modal.phi
+    if system.stiffness_ratios is None:
+        return np.empty((0, phi.shape[1]))
+    stretch = np.diff(phi, axis=0, prepend=0.0)
+    return np.array(system.stiffness_ratios)[:, np.newaxis] * stretch

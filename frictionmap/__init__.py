@@ -23,6 +23,7 @@ theory         closed forms over frequency: beta_lim, beta_stick, continuous mot
 single         one rigid contact under one harmonic load: cells, maps, curves, motions
 general        several contacts, springs in contacts, belts, periodic loads: boundaries, maps, motions
 solvers        the engines behind one interface, and which of them answers for a system
+motions        motions in time under records: earthquakes, pulses, run-ups, random loads
 steady         steady states: cells, maps, response curves, time histories; time and memory of a map
 stop_counts    borders between numbers of stops per cycle, as exact curves
 files          configurations; output files, reading, writing; summaries in words
@@ -63,6 +64,8 @@ if TYPE_CHECKING:
     from .model.periodic_load import PeriodicLoad
     from .model.settings import Solver
     from .model.system import System
+    from .motions.dataset import history
+    from .motions.record import Record
     from .plot import (
         animate,
         plot_boundaries,
@@ -91,6 +94,7 @@ __all__ = [
     "InputError",
     "NoSteadyState",
     "PeriodicLoad",
+    "Record",
     "Solver",
     "System",
     "Units",
@@ -103,6 +107,7 @@ __all__ = [
     "design",
     "explore",
     "features",
+    "history",
     "identify",
     "load_config",
     "open",
@@ -128,6 +133,7 @@ __all__ = [
 _HOME = {
     "Contact": "model.contact",
     "PeriodicLoad": "model.periodic_load",
+    "Record": "motions.record",
     "Solver": "model.settings",
     "System": "model.system",
     "Units": "units.scales",
@@ -138,6 +144,7 @@ _HOME = {
     "continuous_motion": "theory.continuous_motion",
     "curves": "steady.curves",
     "explore": "explorer.notebook",
+    "history": "motions.dataset",
     "load_config": "files.config",
     "open": "files.opening",
     "plot_boundaries": "plot",

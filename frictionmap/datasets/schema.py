@@ -25,6 +25,7 @@ from .labels import (
     attributes,
     labels_of,
 )
+from .motion_labels import TIMES, motion_labels
 
 #: Global attributes that are text, if present.
 TEXTS = (
@@ -34,7 +35,10 @@ TEXTS = (
 
 
 #: Labels of the kinds of datasets with variables of their own.
-_OWN: dict[str, Callable[[], dict[str, Label]]] = {"estimates": lambda: ESTIMATES, "design": answer_labels}
+_OWN: dict[str, Callable[[], dict[str, Label]]] = {
+    "estimates": lambda: ESTIMATES, "design": answer_labels, "history": motion_labels,
+    "spectrum": motion_labels,
+}  # fmt: skip
 
 
 def is_own(what: str) -> bool:
@@ -66,12 +70,14 @@ def _on_limit(name: object) -> bool:
 def kind(ds: xr.Dataset) -> str:
     """Kind of a dataset, or of a slice of one.
 
-    "map", "curves", "response", "boundaries", "estimates", "shares" or "design".
+    "map", "curves", "response", "boundaries", "estimates", "shares", "design", "history" or "spectrum".
     """
     if "estimate" in ds.variables:
         return "estimates"
     if "question" in ds.variables:
         return "design"
+    if "record" in ds.variables and "scale" in ds.variables:
+        return "spectrum" if "period" in ds.variables else "history"
     if any(name in SHARES for name in ds.variables):
         return "shares"
     if any(_is_history(ds, name) for name in ds.variables):
@@ -185,7 +191,8 @@ def _check_attributes(name: str, variable: xr.Variable, label: Label) -> None:
     """Check units and codes, where present, against those that the values are read with."""
     if not label.codes:
         units = variable.attrs.get("units", label.units)
-        if not isinstance(units, str) or units != label.units:
+        in_seconds = name in TIMES and units == "s"
+        if not isinstance(units, str) or (units != label.units and not in_seconds):
             raise InputError(f"{name} must have the units {label.units!r}; got {checks.one_line(units)}")
     elif label.flags in variable.attrs and "flag_meanings" in variable.attrs:
         values: list = np.atleast_1d(variable.attrs[label.flags]).tolist()

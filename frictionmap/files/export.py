@@ -11,6 +11,7 @@ from ..datasets.estimate_labels import OF_PARAMETERS
 from ..datasets.labels import COORDINATES, LABELS
 from ..datasets.schema import kind
 from ..errors import InputError
+from .motions import table_of
 from .storage import write_netcdf
 
 FORMATS = (".nc", ".csv")
@@ -48,6 +49,8 @@ def _table(ds: xr.Dataset) -> Any:
         over = next((axis for axis in ("beta_search", "r_search") if axis in ds.coords), None)
         lines = [name for name in ds.data_vars if ds[name].dims == (over,)]
         return (ds[lines] if over else ds).to_dataframe()
+    if kind(ds) in ("history", "spectrum"):
+        return table_of(ds)
     if kind(ds) == "shares":
         ds = _split_dimension(_split_dimension(ds, "outcome"), "quantile")
     table: dict[str, xr.DataArray] = {}

@@ -44,6 +44,7 @@ from ..errors import InputError, naming
 from .checksums import RECORD, attributes_of, changed_description, damaged_chunk
 from .designs import design_form
 from .estimates import estimates_form
+from .motions import motions_form
 from .slices import choose, further_axes
 
 __all__ = ["kind", "opened", "read", "standard_form"]
@@ -257,6 +258,8 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
         return estimates_form(ds)
     if what == "design":
         return design_form(ds)
+    if what in ("history", "spectrum"):
+        return motions_form(ds)
     ds = with_current_names(_ours(ds))
     ds = ds.set_coords([name for name in (*COORDINATES, *BESIDE) if name in ds.data_vars])
     if what == "response":

@@ -12,6 +12,7 @@ from ..datasets.physical import describe_scales
 from ..datasets.schema import TEXTS, kind
 from .designs import describe_design
 from .estimates import describe_estimates, source_of_data
+from .motions import describe_motions
 from .reading import standard_form
 from .slices import further_axes
 
@@ -134,6 +135,10 @@ def describe_file(ds: xr.Dataset) -> str:
         return "\n".join([*lines, *_estimates(ds)])
     if what == "design":
         return "\n".join([*lines, "answer", *(f"  {line}" for line in describe_design(ds))])
+    if what in ("history", "spectrum"):
+        return "\n".join(
+            [*lines, *axis_lines(ds), "motions", *(f"  {line}" for line in describe_motions(ds))]
+        )
     lines += axis_lines(ds)
     listed = [name for name in ds.data_vars if _is_list(ds[name])]
     lines += _variables(ds, [str(name) for name in ds.data_vars if name not in listed])

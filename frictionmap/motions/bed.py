@@ -17,13 +17,14 @@ class Held(NamedTuple):
 
     bed: Bed
     rest: np.ndarray  # (m, 2 m + N) modes at the place of rest
+    restored: bool  # whether every motion that the contacts leave has one
 
 
 def _basis(rigid: np.ndarray, modes: int) -> np.ndarray:
     """Orthonormal motions (m, h) that the held rigid contacts leave."""
     if not rigid.size:
         return np.eye(modes)
-    left, sizes, right = np.linalg.svd(rigid)
+    _, sizes, right = np.linalg.svd(rigid)
     rank = int((sizes > sizes[0] * 1e-12).sum())
     return right[rank:].T
 
@@ -67,5 +68,5 @@ def held(problem: Problem) -> Held:
             np.ascontiguousarray(vibration), np.ascontiguousarray(forces), gains,
             np.array([not belt], dtype=np.int64),
         ),
-        np.ascontiguousarray(rest),
+        np.ascontiguousarray(rest), bool(restored.all()),
     )  # fmt: skip

@@ -8,26 +8,22 @@ import numpy as np
 from .._kernels.general.record import make_record
 from .._kernels.general.series import Friction
 from .._kernels.history.kept import Kept, make_kept
-from .._kernels.history.motion import follow_record
+from .._kernels.history.motion import follow_record, make_memory
 from ..jobs import Progress, Watch, run_jobs
 from .channels import Drive
+from .starts import Start
 from .structure import Structure, held_of, problem_of, watched_of
 
 #: Events and states that there is room for at first.
 _FIRST = 256
 
-#: Intervals after a record after which a motion is not asleep.
-_MOST_AFTER = 10**6
+#: Intervals after a record that a motion is followed to its rest.
+_MOST_AFTER = 200_000
+
+_CREEPS = 2  # the status
 
 #: Friction that nothing overcomes.
 _HOLDS = 1e150
-
-
-class Start(NamedTuple):
-    """State at the beginning."""
-
-    q: np.ndarray  # (m,)
-    p: np.ndarray  # (m,) q'
 
 
 class Asked(NamedTuple):
@@ -47,13 +43,14 @@ class Found(NamedTuple):
     state: np.ndarray  # (2, m) at the end
     sense: np.ndarray  # (N,)
     end: float  # when that is
-    asleep: bool
+    asleep: float  # since when no contact moves again; NaN where this is not proved
+    place: np.ndarray | None  # (m,) modes where it comes to rest; None where it may move on
 
 
 def _starting(structure: Structure, start: Start) -> np.ndarray:
-    contacts = structure.spring.size
-    found = np.zeros((3, max(start.q.size, contacts)))
-    found[0, : start.q.size], found[1, : start.q.size] = start.q, start.p
+    m, contacts = start.q.size, structure.spring.size
+    found = np.zeros((3, max(m, contacts)))
+    found[0, :m], found[1, :m], found[2, :contacts] = start.q, start.p, start.f
     return found
 
 
@@ -65,20 +62,26 @@ class Motions:
         self.problem = problem_of(structure, drive)
         self.held = held_of(self.problem)
         self.watched = watched_of(structure, self.problem, drive)
+        self._even = len(np.unique(drive.steps)) == 1  # else tables hold for one interval
 
-    def _limits(self, asked: Asked) -> tuple[np.ndarray, np.ndarray]:
+    def _limits(self, asked: Asked, events: bool) -> tuple[np.ndarray, np.ndarray]:
         """Lengths of the intervals, and the limits of `follow_record`."""
         steps = self.drive.steps.copy()
         if asked.after is None:
-            return steps, np.array([asked.every, _MOST_AFTER, 1])
+            return steps, np.array([asked.every, _MOST_AFTER, 1, events])
         count = int(np.ceil(asked.after / steps[-1]))
         if count:
             steps[-1] = asked.after / count
-        return steps, np.array([asked.every, count, 0])
+        return steps, np.array([asked.every, count, 0, events])
 
-    def follow(self, kinetic: np.ndarray, static: np.ndarray, scale: float, asked: Asked) -> Found:
-        """Follow one motion; where there is no room for all its events, once more with more."""
-        steps, limits = self._limits(asked)
+    def follow(
+        self, kinetic: np.ndarray, static: np.ndarray, scale: float, asked: Asked, events: bool = True
+    ) -> Found:
+        """Follow one motion; where there is no room for all its events, once more with more.
+
+        events : whether states at events are kept, where any are
+        """
+        steps, limits = self._limits(asked, events and asked.every > 0)
         terms = self.drive.terms * scale
         if self.drive.normal.any():  # normal loads are no loads
             normal = self.drive.normal.any(axis=0)
@@ -96,24 +99,43 @@ class Motions:
         while True:
             masses = np.empty((0, self.problem.squares.size))
             kept = make_kept(self.problem, self.watched.weights, make_record(self.problem, masses, 0), most)
-            status, counts, state, sense, done = follow_record(
-                self.problem, friction, start, terms, steps, self.drive.times, self.drive.jumps, kept, bed,
-                limits,
+            memory = make_memory(self.problem, self.watched.weights.shape[0], self._even)
+            status, counts, state, sense, done, asleep = follow_record(
+                self.problem, memory, friction, start, asked.start.sense, terms, steps, self.drive.times,
+                self.drive.jumps, kept, bed, limits,
             )  # fmt: skip
             needed = int(kept.counts.max())
             if needed <= most:
                 break
             most = needed
+        end, slept = (self._time(k, steps) for k in (done, asleep))
+        found = Found(int(status), kept, counts, state, sense, end, slept if asleep >= 0 else np.nan, None)
+        return found._replace(place=self._place(found))
+
+    def _time(self, intervals: int, steps: np.ndarray) -> float:
+        """Time after so many intervals."""
         last = steps.size - 1
-        end = self.drive.times[min(done, last)] + max(0, done - last) * steps[-1]
-        asleep = status == 0 and limits[2] == 1
-        return Found(int(status), kept, counts, state, sense, float(end), asleep)
+        return float(self.drive.times[min(intervals, last)] + max(0, intervals - last) * steps[-1])
+
+    def _place(self, one: Found) -> np.ndarray | None:
+        """Where the masses come to rest."""
+        if one.asleep == one.asleep and self.held.restored:
+            springs = np.where(self.structure.spring > 0.0, one.kept.forces, 0.0)
+            return self.held.rest @ np.concatenate((one.state[0], one.state[1], springs))
+        return one.state[0] if one.status == _CREEPS else None
+
+    def contact_places(self, one: Found) -> np.ndarray:
+        """Where the contacts come to rest, (N,)."""
+        assert one.place is not None
+        moving = self.problem.base @ self.drive.terms[-1, :, 1] != 0.0
+        places = self.problem.chi @ one.place - self.problem.base @ self.drive.terms[-1, :, 0]
+        return np.where(moving, np.nan, places)
 
     def hold(self, asked: Asked) -> np.ndarray:
         """Largest force in every contact with all contacts held, (N,)."""
         friction = np.full(self.structure.spring.size, _HOLDS)
         asked = Asked(asked.start, 0.0 if asked.after is None else asked.after, 0)
-        found = self.follow(friction, friction, 1.0, asked)
+        found = self.follow(friction, friction, 1.0, asked, False)
         rows = self.watched.places["friction"]
         return np.abs(found.kept.peaks[:2, rows]).max(axis=0)
 

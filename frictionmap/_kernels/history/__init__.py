@@ -6,6 +6,7 @@ The structure, its contacts, the series of a step and the events are those of `g
 module      what is in it
 ==========  ====================================================================
 kept        peaks, works, slides, events and samples of a motion in time
+tables      intervals in which nothing happens, by sums
 asleep      when a motion under no load has ended for all contacts
 motion      the motion under a record, and after it
 ==========  ====================================================================

@@ -8,7 +8,7 @@ from ..compiler import entry, kernel
 from ..compiler.vectors import LANES, filled, load, store
 from ..general.crossings import value_at
 from ..general.problem import PIECE_TERMS, SIZE, TERMS, WIDTH, H, P, Q, first_contact_row, force_row
-from ..general.record import HIGH_AT, LOW_AT, Record, keep_range, keep_works
+from ..general.record import HIGH, HIGH_AT, LOW, LOW_AT, Record, keep_range, keep_works
 
 STOP, START, TURN = 0, 1, 2
 
@@ -22,7 +22,7 @@ PRESENT, LARGEST = 0, 1
 OF_LOAD, OF_BASE = 0, 1
 
 #: Row of the scratch for the quantity watched.
-_VALUE = 6
+VALUE = 6
 
 
 class Kept(NamedTuple):
@@ -42,7 +42,8 @@ class Kept(NamedTuple):
     states: np.ndarray  # (most, 1 + 2 m + N + D) time, q, q', f, L
     senses: np.ndarray  # (most, N)
     counts: np.ndarray  # (2,) int: events and states there were; more than `most` do not fit
-    forces: np.ndarray  # (N,) forces in the contacts at the end of the interval
+    ends: np.ndarray  # (Q,) the watched quantities at the end of the interval
+    forces: np.ndarray  # (N,) forces in the contacts there
     clock: np.ndarray  # (1,) time at the beginning of the interval
 
 
@@ -54,52 +55,54 @@ def make_kept(problem, weights, record, most):
     """
     contacts, modes = problem.chi.shape
     columns = 1 + 2 * modes + contacts + problem.push.shape[1]
-    peaks = np.zeros((4, weights.shape[0]))
-    peaks[0], peaks[1] = np.inf, -np.inf
+    watched = weights.shape[0]
+    peaks = np.zeros((4, watched))
+    peaks[LOW], peaks[HIGH] = np.inf, -np.inf
     return Kept(
-        weights, peaks, np.zeros((2, weights.shape[0])), record, np.zeros(2), np.zeros((2, contacts)),
+        weights, peaks, np.zeros((2, watched)), record, np.zeros(2), np.zeros((2, contacts)),
         np.zeros((3, contacts)), np.zeros((most, 3)), np.zeros((most, columns)),
         np.zeros((most, contacts), np.int8), np.zeros(2, np.int64),
-        np.zeros(contacts), np.zeros(1),
+        np.full(watched, np.nan), np.zeros(contacts), np.zeros(1),
     )  # fmt: skip
 
 
 @kernel
-def _fill_watched(problem, row, motion, kept, i):
+def fill_watched(problem, row, motion, kept, i):
     """Fill the series of quantity i in the scratch."""
     contacts, modes = problem.chi.shape
     series, scratch, weights = motion.series, motion.scratch, kept.weights
     first = first_contact_row(problem)
     for k in range(0, WIDTH, LANES):
-        store(filled(0.0), scratch, _VALUE * WIDTH + k)
+        store(filled(0.0), scratch, VALUE * WIDTH + k)
     for m in range(modes):
         place, rate = weights[i, m], weights[i, modes + m] / row.numbers[H]
         if place != 0.0:
             for k in range(0, WIDTH, LANES):
-                at = _VALUE * WIDTH + k
+                at = VALUE * WIDTH + k
                 store(load(scratch, at) + load(series, m * WIDTH + k) * place, scratch, at)
         if rate != 0.0:
             for k in range(TERMS + 1):
-                scratch[_VALUE, k] += rate * (k + 1.0) * series[m, k + 1]
+                scratch[VALUE, k] += rate * (k + 1.0) * series[m, k + 1]
     for j in range(contacts):
         share = weights[i, 2 * modes + j]
         if share != 0.0:
             for k in range(TERMS):
-                scratch[_VALUE, k] += share * series[first + 2 * contacts + j, k]
+                scratch[VALUE, k] += share * series[first + 2 * contacts + j, k]
     for d in range(problem.push.shape[1]):
         share = weights[i, 2 * modes + contacts + d]
         if share != 0.0:
             for k in range(PIECE_TERMS):
-                scratch[_VALUE, k] += share * series[modes + d, k]
+                scratch[VALUE, k] += share * series[modes + d, k]
 
 
 @kernel
 def _keep_peaks(problem, row, motion, begin, end, kept):
     """Include the watched quantities of the present step, which begins at `begin` in the interval."""
     for i in range(kept.weights.shape[0]):
-        _fill_watched(problem, row, motion, kept, i)
+        fill_watched(problem, row, motion, kept, i)
         kept.peaks[LOW_AT, i] = kept.peaks[HIGH_AT, i] = -1.0
-        keep_range(motion.scratch, _VALUE, end, row.numbers[SIZE], kept.peaks, i, motion.scratch)
+        kept.ends[i] = value_at(motion.scratch, VALUE, end)
+        keep_range(motion.scratch, VALUE, end, row.numbers[SIZE], kept.peaks, i, motion.scratch)
         for side in range(2):
             at = kept.peaks[LOW_AT + side, i]
             if at >= 0.0:
@@ -123,17 +126,17 @@ def _integral(rate, place, end):
 
 
 @kernel
-def _fill_pushed(problem, motion, d):
+def fill_pushed(problem, motion, d):
     """Fill the series of the displacement that a channel pushes in the scratch; whether it pushes any."""
     scratch, pushes = motion.scratch, False
     for k in range(WIDTH):
-        scratch[_VALUE, k] = 0.0
+        scratch[VALUE, k] = 0.0
     for m in range(problem.squares.size):
         push = problem.push[m, d]
         if push != 0.0:
             pushes = True
             for k in range(0, WIDTH, LANES):
-                at = _VALUE * WIDTH + k
+                at = VALUE * WIDTH + k
                 store(load(scratch, at) + load(motion.series, m * WIDTH + k) * push, scratch, at)
     return pushes
 
@@ -153,9 +156,9 @@ def _keep_works(problem, row, motion, end, kept):
             kept.slides[LARGEST, j] = max(kept.slides[LARGEST, j], kept.slides[PRESENT, j])
     for d in range(channels):
         wall = series[modes + d]
-        if _fill_pushed(problem, motion, d):
-            pushed = scratch[_VALUE]
-            ends = value_at(scratch, _VALUE, end) * value_at(series, modes + d, end) - pushed[0] * wall[0]
+        if fill_pushed(problem, motion, d):
+            pushed = scratch[VALUE]
+            ends = value_at(scratch, VALUE, end) * value_at(series, modes + d, end) - pushed[0] * wall[0]
             kept.works[OF_LOAD] += ends - _integral(wall, pushed, end)
         for j in range(contacts):
             if problem.base[j, d] != 0.0:
@@ -171,22 +174,32 @@ def keep_step(problem, row, motion, begin, end, kept):
 
 
 @kernel
-def keep_state(problem, row, motion, begin, x, kept):
-    """Keep the state at x of the present step, which begins at `begin` in the interval."""
+def keep_state(problem, row, motion, x, at, kept):
+    """Keep the state at `at` of the present step, which is at x in the interval."""
+    keep_ends(problem, motion, at, kept)
+    store_state(problem, row, motion, x, kept)
+
+
+@kernel
+def store_state(problem, row, motion, x, kept):
+    """Keep the state at x in the interval; the forces there are those in `kept.forces`."""
     k = kept.counts[1]
     kept.counts[1] = k + 1
     if k >= kept.states.shape[0]:
         return
     contacts, modes = problem.chi.shape
-    kept.states[k, 0] = kept.clock[0] + (begin + x) * row.numbers[H]
+    kept.states[k, 0] = kept.clock[0] + x * row.numbers[H]
     for m in range(modes):
         kept.states[k, 1 + m] = motion.state[Q, m]
         kept.states[k, 1 + modes + m] = motion.state[P, m] / row.numbers[H]
     for j in range(contacts):
-        kept.states[k, 1 + 2 * modes + j] = value_at(motion.series, force_row(problem, j), x)
+        kept.states[k, 1 + 2 * modes + j] = kept.forces[j]
         kept.senses[k, j] = motion.sense[j]
     for d in range(problem.push.shape[1]):
-        kept.states[k, 1 + 2 * modes + contacts + d] = value_at(motion.series, modes + d, x)
+        load_ = 0.0
+        for i in range(PIECE_TERMS - 1, -1, -1):
+            load_ = load_ * x + row.loads[d, i]
+        kept.states[k, 1 + 2 * modes + contacts + d] = load_
 
 
 @kernel

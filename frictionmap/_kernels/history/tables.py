@@ -1,0 +1,359 @@
+"""Intervals of a record in which no contact changes what it does, passed by tables.
+
+The motion in an interval depends linearly on units: the state at its beginning, the friction of contacts that
+slide, and the terms of the load.  For every set of held contacts the part of each unit is kept in
+
+- the change of the state (E - I: the rounding of E would grow with the number of intervals),
+- the control points of the cubic that bounds the velocity or force watched in each contact, up to a share of
+  its fourth derivative (see `crossings`),
+- the quantities whose peaks are kept, at the end; between the ends they exceed these by an eighth of their
+  second derivative at most,
+- integrals of the displacements that the load pushes, for its work.
+
+An interval in which nothing watched can reach its limit, and no quantity its peak so far, is passed by sums
+of these parts.  Others are followed by their series.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiler import entry, inner_kernel, kernel
+from ..compiler.packed import packed
+from ..compiler.vectors import LANES, filled, load, store
+from ..general.counts import STUCK
+from ..general.crossings import value_at
+from ..general.laws.kinds import has_force, state_size
+from ..general.problem import (
+    LONG,
+    PIECE_TERMS,
+    TERMS,
+    WIDTH,
+    F,
+    H,
+    P,
+    Q,
+    first_contact_row,
+    force_row,
+    padded,
+    varies,
+)  # fmt: skip
+from ..general.record import HIGH, LOW, OF_FRICTION
+from ..general.series import Friction, expand
+from .kept import LARGEST, OF_LOAD, PRESENT, VALUE, fill_pushed, fill_watched
+
+#: Sets of held contacts whose tables are kept, and numbers in all tables, at most.
+_MOST_SETS, _MOST_NUMBERS = 64, 1 << 22
+
+#: Error of a cubic over the interval by its fourth derivative, and of the larger end by the second.
+_HERMITE, _OVERSHOOT = 1.0 / 384.0, 1.0 / 8.0
+
+
+#: A value this share above a peak is that peak, with the rounding error of another sum.
+_SAME = 2.0**-50
+
+
+class Tables(NamedTuple):
+    """Tables of S sets of held contacts; U units, B rows of parts, G rows of bounds, filled up to vectors."""
+
+    parts: np.ndarray  # (S U, B)
+    bounds: np.ndarray  # (S U, G)
+    known: np.ndarray  # (S,) int: which set is there, plus 1; 0: none
+    units: np.ndarray  # (U,) the units of an interval
+    sums: np.ndarray  # (B,)
+    most: np.ndarray  # (G,)
+    unit: np.ndarray  # (N,) friction; scratch
+    state: np.ndarray  # (3, ...) a state; scratch
+
+
+@kernel
+def _sizes(problem, watched):
+    """(units, rows of parts) of a system that watches so many quantities."""
+    contacts, channels = problem.spring.size, problem.push.shape[1]
+    units = state_size(problem) + contacts + channels * PIECE_TERMS
+    return units, state_size(problem) + 4 * contacts + watched + channels * (PIECE_TERMS - 1)
+
+
+@entry
+def make_tables(problem, watched, wanted):
+    """Allocate them, or empty ones; `watched` is the number of quantities whose peaks are kept."""
+    contacts, modes = problem.chi.shape
+    units, rows = _sizes(problem, watched)
+    width, bounds = padded(rows), padded(contacts + watched)
+    sets = min(1 << min(contacts, 6), _MOST_SETS)
+    sets = max(1, min(sets, _MOST_NUMBERS // (units * (width + bounds))))
+    sets = sets if wanted else 0
+    return Tables(
+        np.zeros((sets * units, width)), np.zeros((sets * units, bounds)), np.zeros(sets, np.int64),
+        np.zeros(units), np.zeros(width), np.zeros(bounds), np.zeros(contacts),
+        np.zeros((3, padded(max(modes, contacts)))),
+    )  # fmt: skip
+
+
+@kernel
+def has_tables(problem):
+    """Whether tables hold for a system: no belts, no walls that move, constant normal loads."""
+    possible = True
+    for j in range(problem.spring.size):
+        possible = possible and problem.belt[j] == 0.0 and not varies(problem, j)
+        for d in range(problem.push.shape[1]):
+            possible = possible and problem.base[j, d] == 0.0
+    return possible
+
+
+@kernel
+def forget(tables):
+    """Begin anew, for another length of the interval."""
+    for s in range(tables.known.size):
+        tables.known[s] = 0
+
+
+@kernel
+def _weighted(series, at, order):
+    """Bound on the derivative of this order of a series on its step."""
+    sum_ = 0.0
+    for k in range(order, TERMS):
+        factor = 1.0
+        for i in range(order):
+            factor *= k - i
+        sum_ += factor * abs(series[at, k])
+    return sum_
+
+
+@kernel
+def _begin_with(problem, row, motion, unit, q):
+    """Set one unit to 1 and all others to zero; see `Tables`."""
+    modes, channels = problem.push.shape
+    size, contacts = state_size(problem), problem.spring.size
+    for part in range(3):
+        for i in range(motion.state.shape[1]):
+            motion.state[part, i] = 0.0
+    for j in range(contacts):
+        unit.kinetic[j] = motion.sense[j] if q == size + j else 0.0
+    if q < 2 * modes:
+        motion.state[q // modes, q % modes] = 1.0
+    elif q < size:
+        motion.state[F, q - 2 * modes] = 1.0
+    for k in range(0, channels * WIDTH, LANES):
+        store(filled(0.0), motion.series, modes * WIDTH + k)
+    at = q - size - contacts
+    if at >= 0:
+        motion.series[modes + at // PIECE_TERMS, at % PIECE_TERMS] = 1.0
+    motion.clock[0] = 0.0
+
+
+@kernel
+def _fill_unit(problem, row, motion, kept, tables, q, at):
+    """Fill the parts of a unit, whose series are there, in row `at`."""
+    channels = problem.push.shape[1]
+    size, contacts = state_size(problem), problem.spring.size
+    parts, bounds, series = tables.parts, tables.bounds, motion.series
+    place = size
+    for j in range(contacts):
+        source = first_contact_row(problem) + (1 if motion.sense[j] != 0 else 2) * contacts + j
+        slope = 0.0
+        for k in range(1, TERMS):
+            slope += k * series[source, k]
+        end = value_at(series, source, 1.0)
+        parts[at, place] = series[source, 0]
+        parts[at, place + 1] = series[source, 0] + series[source, 1] / 3.0
+        parts[at, place + 2] = end - slope / 3.0
+        parts[at, place + 3] = end
+        bounds[at, j] = _HERMITE * _weighted(series, source, 4)
+        place += 4
+    for i in range(kept.weights.shape[0]):
+        fill_watched(problem, row, motion, kept, i)
+        parts[at, place + i] = value_at(motion.scratch, VALUE, 1.0)
+        bounds[at, contacts + i] = _OVERSHOOT * _weighted(motion.scratch, VALUE, 2)
+    place += kept.weights.shape[0]
+    for d in range(channels):
+        fill_pushed(problem, motion, d)
+        for i in range(PIECE_TERMS - 1):
+            sum_ = 0.0
+            for k in range(LONG):
+                sum_ += motion.scratch[VALUE, k] / (i + k + 1.0)
+            parts[at, place + i] = sum_
+        place += PIECE_TERMS - 1
+    _fill_change(problem, motion, parts, q, at)
+
+
+@kernel
+def _fill_change(problem, motion, parts, q, at):
+    """Fill the change of the state: sums of the terms of the series after those that the state holds."""
+    modes = problem.push.shape[0]
+    for m in range(modes):
+        place, rate = 0.0, 0.0
+        for k in range(LONG - 1, 1, -1):
+            place += motion.moves[k, m]
+            rate += k * motion.moves[k, m]
+        parts[at, m] = place + motion.moves[1, m]
+        parts[at, modes + m] = rate
+    for j in range(state_size(problem) - 2 * modes):
+        sum_ = 0.0
+        if motion.sense[j] == 0 and has_force(problem, j):
+            for k in range(TERMS - 1, 0, -1):
+                sum_ += motion.series[force_row(problem, j), k]
+        parts[at, 2 * modes + j] = sum_
+
+
+@kernel
+def _fill_set(problem, row, motion, kept, tables, slot):
+    """Fill the tables of the present set of held contacts; the state stays."""
+    count = tables.units.size
+    unit = packed(Friction(tables.unit, tables.unit))
+    for part in range(3):
+        for i in range(motion.state.shape[1]):
+            tables.state[part, i] = motion.state[part, i]
+    for q in range(count):
+        _begin_with(problem, row, motion, unit, q)
+        expand(problem, row, unit, 0.0, -1, motion, True)
+        _fill_unit(problem, row, motion, kept, tables, q, slot * count + q)
+    for part in range(3):
+        for i in range(motion.state.shape[1]):
+            motion.state[part, i] = tables.state[part, i]
+    motion.clock[0] = math.nan
+
+
+@kernel
+def _slot(problem, row, motion, kept, tables):
+    """Place of the present set of held contacts in the tables, filled if it is new there."""
+    held = 0
+    for j in range(motion.sense.size):
+        if motion.sense[j] == 0:
+            held += 1 << j
+    slot = held % tables.known.size
+    if tables.known[slot] != held + 1:
+        _fill_set(problem, row, motion, kept, tables, slot)
+        tables.known[slot] = held + 1
+    return slot
+
+
+@inner_kernel
+def _put_units(problem, row, friction, motion, units):
+    """Put the state, the friction forces and the terms of the load in one row."""
+    modes, channels = problem.push.shape
+    size, contacts = state_size(problem), problem.spring.size
+    for m in range(modes):
+        units[m] = motion.state[Q, m]
+        units[modes + m] = motion.state[P, m]
+    for j in range(size - 2 * modes):
+        units[2 * modes + j] = motion.state[F, j] if motion.sense[j] == 0 else 0.0
+    for j in range(contacts):
+        units[size + j] = motion.sense[j] * friction.kinetic[j]
+    for d in range(channels):
+        for k in range(PIECE_TERMS):
+            units[size + contacts + d * PIECE_TERMS + k] = row.loads[d, k]
+
+
+@inner_kernel
+def _add_up(tables, slot):
+    """Fill the sums of the parts, and of the bounds, over the units."""
+    count = tables.units.size
+    for r in range(0, tables.sums.size, LANES):
+        sum_ = filled(0.0)
+        for q in range(count):
+            sum_ = sum_ + load(tables.parts, (slot * count + q) * tables.sums.size + r) * tables.units[q]
+        store(sum_, tables.sums, r)
+    for r in range(0, tables.most.size, LANES):
+        sum_ = filled(0.0)
+        for q in range(count):
+            size = abs(tables.units[q])
+            sum_ = sum_ + load(tables.bounds, (slot * count + q) * tables.most.size + r) * size
+        store(sum_, tables.most, r)
+
+
+@inner_kernel
+def _stays(friction, motion, tables, first, j):
+    """Whether what is watched in contact j stays inside its limits."""
+    sums = tables.sums
+    low, high = math.inf, -math.inf
+    for i in range(4):
+        low, high = min(low, sums[first + 4 * j + i]), max(high, sums[first + 4 * j + i])
+    bound = tables.most[j]
+    if motion.sense[j] > 0:
+        return low > bound
+    if motion.sense[j] < 0:
+        return high < -bound
+    limit = friction.static[j] - bound
+    return low > -limit and high < limit
+
+
+@kernel
+def pass_by_tables(problem, row, friction, motion, counts, kept, tables):
+    """Move the motion to the end of an interval, if nothing happens there that must be looked into.
+
+    Parameters
+    ----------
+    problem, row, friction, motion, counts, kept : see `motion.follow_record`; the terms of the load over the
+        interval are in `row.loads`
+    tables : Tables
+
+    Returns
+    -------
+    bool : whether it was moved
+    """
+    contacts = problem.spring.size
+    for j in range(contacts):
+        if motion.fresh[j] != 0 or motion.idle[j]:
+            return False
+    slot = _slot(problem, row, motion, kept, tables)
+    _put_units(problem, row, friction, motion, tables.units)
+    _add_up(tables, slot)
+    size = state_size(problem)
+    for j in range(contacts):
+        if not _stays(friction, motion, tables, size, j):
+            return False
+    first = size + 4 * contacts
+    for i in range(kept.weights.shape[0]):
+        reach, end = tables.most[contacts + i], tables.sums[first + i]
+        # the value at the beginning was included by the interval before, or is that of the start or a jump
+        begin, low, high = kept.ends[i], kept.peaks[LOW, i], kept.peaks[HIGH, i]
+        if not (low - _SAME * abs(low) <= min(begin, end) - reach):
+            return False
+        if not (max(begin, end) + reach <= high + _SAME * abs(high)):
+            return False
+    _take(problem, row, friction, motion, counts, kept, tables)
+    return True
+
+
+@inner_kernel
+def _take(problem, row, friction, motion, counts, kept, tables):
+    """Move the state, and add what is summed over the motion."""
+    contacts, modes = problem.chi.shape
+    channels = problem.push.shape[1]
+    size, sums, units = state_size(problem), tables.sums, tables.units
+    moments = size + 4 * contacts + kept.weights.shape[0]
+    for d in range(channels):
+        start, gain = 0.0, 0.0
+        for m in range(modes):
+            start += problem.push[m, d] * units[m]
+            gain += problem.push[m, d] * sums[m]
+        first = size + contacts + d * PIECE_TERMS
+        work, total = 0.0, units[first]
+        for i in range(PIECE_TERMS - 1):
+            work -= (i + 1.0) * units[first + i + 1] * sums[moments + d * (PIECE_TERMS - 1) + i]
+            total += units[first + i + 1]
+        kept.works[OF_LOAD] += work + total * (start + gain) - units[first] * start
+    for j in range(contacts):
+        kept.forces[j] = motion.sense[j] * friction.kinetic[j]
+        if motion.sense[j] != 0:
+            way = 0.0
+            for m in range(modes):
+                way += problem.chi[j, m] * sums[m]
+            kept.record.distance[j] += abs(way)
+            kept.record.works[OF_FRICTION, j] += abs(way) * friction.kinetic[j]
+            kept.slides[PRESENT, j] += abs(way)
+            kept.slides[LARGEST, j] = max(kept.slides[LARGEST, j], kept.slides[PRESENT, j])
+        else:
+            kept.forces[j] = sums[size + 4 * j + 3]
+            counts[STUCK, j] += row.numbers[H]
+    for m in range(modes):
+        motion.state[Q, m] = units[m] + sums[m]
+        motion.state[P, m] = units[modes + m] + sums[modes + m]
+    for j in range(size - 2 * modes):
+        if motion.sense[j] == 0 and has_force(problem, j):
+            motion.state[F, j] = units[2 * modes + j] + sums[2 * modes + j]
+            kept.forces[j] = motion.state[F, j]
+    for i in range(kept.weights.shape[0]):
+        kept.ends[i] = sums[size + 4 * contacts + i]

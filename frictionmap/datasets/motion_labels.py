@@ -1,0 +1,175 @@
+"""Names, types and valid values of motions in time under records, and of their spectra."""
+
+import numpy as np
+
+from .. import regimes
+from .labels import Label
+
+#: Dimensions of variables of every motion.
+CELL = ("record", "scale", "mu", "beta")
+
+STATUSES = (
+    regimes.Code(0, "resolved", "followed to the end that was wanted"),
+    regimes.Code(1, "ringing", "contacts may move on after the longest time; give a time as `after`"),
+    regimes.Code(2, "creeping", "a contact slides ever slower and never stops; it rests at `residual`"),
+    regimes.Code(3, "too_many_events", "chattering: more than 2000 events between two samples"),
+    regimes.Code(4, "record_too_short", "it ended before all contacts were at rest for good"),
+    regimes.Code(5, "undetermined", "contacts close a loop in a common stop, and their forces are not "
+                 "determined"),
+)  # fmt: skip
+
+_KINDS = (
+    regimes.Code(-1, "none", "no event: there are fewer than in other motions"),
+    regimes.Code(0, "stop", "a slide ends"),
+    regimes.Code(1, "start", "a slide begins"),
+    regimes.Code(2, "turn", "the sense of a slide changes without a stop"),
+)
+
+_SENSES = (
+    regimes.Code(-1, "sliding_down", "the contact slides towards smaller z"),
+    regimes.Code(0, "sticking", "the contact sticks, or its spring does not slip"),
+    regimes.Code(1, "sliding_up", "the contact slides towards larger z"),
+)
+
+_X, _V, _A, _F, _E = "over P/k1", "over omega_1 P/k1", "over omega_1^2 P/k1", "over P", "over P^2/k1"
+_REST = "NaN where contacts may move again"
+
+
+def _real(meaning: str, *dims: str, comment: str = "", least: float = -np.inf, units: str = "1") -> Label:
+    return Label(
+        np.float64, meaning, (*CELL, *dims), comment=comment, least=least, nan=True, inf=True, units=units
+    )
+
+
+def _size(meaning: str, *dims: str, comment: str = "") -> Label:
+    return _real(meaning, *dims, comment=comment, least=0.0)
+
+
+#: Variables by name; times are in 1/omega_1, or in seconds with units.
+MOTIONS = {
+    "record": Label(np.int64, "record, counted from 1", ("record",), least=1),
+    "scale": Label(np.float64, "factor of the record", ("scale",)),
+    "mu": Label(np.float64, "ratio of static to kinetic friction force", ("mu",), least=1.0),
+    "beta": Label(np.float64, "kinetic friction force, over P", ("beta",), least=0.0),
+    "period": Label(np.float64, "natural period, over 1/omega_1", ("period",), least=0.0, inf=True),
+    "time": Label(np.float64, "time since the beginning of the record, over 1/omega_1", ("time",), least=0.0),
+    "dof": Label(np.int64, "mass, counted from 1", ("dof",), least=1),
+    "contact": Label(np.int64, "contact, counted from 1", ("contact",), least=1),
+    "contact_name": Label(np.str_, "name of the contact", ("contact",)),
+    "record_name": Label(np.str_, "name of the record", ("record",)),
+    "x": _real(f"displacement of the masses, {_X}", "dof", "time"),
+    "v": _real(f"velocity of the masses, {_V}", "dof", "time"),
+    "acceleration": _real(f"absolute acceleration of the masses, {_A}", "dof", "time"),
+    "z": _real(f"motion in the contact, {_X}", "time"),
+    "friction": _real(f"friction force against the motion in the contact, {_F}", "time"),
+    "direction": Label(np.int8, "direction of the motion in the contact", (*CELL, "time"), _SENSES),
+    "y": _real(f"displacement of the slider of an elastic contact, {_X}", "time"),
+    "event_time": _real("time of the event, over 1/omega_1", "event", comment="padded with NaN"),
+    "event_contact": Label(
+        np.int64, "contact that the event is of, counted from 1; 0: none", (*CELL, "event"), least=0
+    ),
+    "event_kind": Label(np.int8, "kind of the event", (*CELL, "event"), _KINDS),
+    "events": Label(np.int64, "number of events", CELL, least=0),
+    "amplitude": _size(f"largest displacement of the masses, {_X}", "dof"),
+    "acceleration_amplitude": _size(f"largest absolute acceleration of the masses, {_A}", "dof"),
+    "contact_amplitude": _size(f"largest motion in the contact, {_X}"),
+    "friction_amplitude": _size(f"largest force in the contact, {_F}"),
+    "amplitude_time": _size("time of the largest displacement of the masses", "dof"),
+    "acceleration_amplitude_time": _size("time of the largest absolute acceleration of the masses", "dof"),
+    "contact_amplitude_time": _size("time of the largest motion in the contact"),
+    "friction_amplitude_time": _size("time of the largest force in the contact"),
+    "x_max": _real(f"largest displacement of the masses, {_X}", "dof"),
+    "x_min": _real(f"least displacement of the masses, {_X}", "dof"),
+    "z_max": _real(f"largest motion in the contact, {_X}"),
+    "z_min": _real(f"least motion in the contact, {_X}"),
+    "acceleration_max": _real(f"largest absolute acceleration of the masses, {_A}", "dof"),
+    "acceleration_min": _real(f"least absolute acceleration of the masses, {_A}", "dof"),
+    "friction_max": _real(f"largest force in the contact, {_F}"),
+    "friction_min": _real(f"least force in the contact, {_F}"),
+    "residual": _real(f"place where the masses come to rest, {_X}", "dof", comment=_REST),
+    "contact_residual": _real(f"place where the contact comes to rest, {_X}", comment=_REST),
+    "stops": _size("stops: ends of slides"),
+    "slips": _size("slips of an elastic contact"),
+    "turns": _size("changes of the sense of a slide without a stop"),
+    "stuck_fraction": Label(
+        np.float64, "share of the time in which the contact does not slide", CELL, least=0.0, most=1.0,
+        nan=True,
+    ),
+    "sliding_distance": _size(f"sliding distance, {_X}"),
+    "largest_slide": _size(f"longest distance of a slide, {_X}"),
+    "work_load": _real(f"work of the load, {_E}", comment="of -M iota a where the base moves"),
+    "work_friction": _real(f"work lost in the contact, {_E}"),
+    "work_damping": _real(f"work lost in the damping, {_E}"),
+    "work_walls": _real(f"work of walls that move, belts included, {_E}"),
+    "energy": _real(f"energy at the end, of the springs in contacts, too, {_E}"),
+    "base_force": _size(f"largest force of the structure on its base, {_F}", comment="(K x + C x') ones"),
+    "base_force_max": _real(f"largest force of the base on the structure, {_F}"),
+    "base_force_min": _real(f"least force of the base on the structure, {_F}"),
+    "spring_force": _size(f"largest force in the spring below each mass of a chain, {_F}", "dof"),
+    "beta_hold": Label(
+        np.float64, "friction, over P, from which no contact ever moves", ("record", "scale", "mu"),
+        least=0.0, nan=True, inf=True,
+    ),
+    "end_time": _size("time at the end, over 1/omega_1"),
+    "asleep_time": _size(
+        "time from which no contact moves again, over 1/omega_1",
+        comment="the first sample at which this is proved; NaN where it is not",
+    ),
+    "first_motion": _size("time of the first event, over 1/omega_1", comment="NaN without one"),
+    "status": Label(np.int8, "how the motion ended", CELL, STATUSES),
+}  # fmt: skip
+
+#: Variables with one value per contact: the dimension `contact` stands before `time`, if there are several.
+OF_CONTACTS = (
+    "z", "friction", "direction", "y", "contact_amplitude", "friction_amplitude", "contact_amplitude_time",
+    "friction_amplitude_time", "z_max", "z_min", "friction_max", "friction_min", "contact_residual", "stops",
+    "slips", "turns", "stuck_fraction", "sliding_distance", "largest_slide", "work_friction",
+)  # fmt: skip
+
+#: Times: in seconds where the natural frequency is known.
+TIMES = (
+    "time", "event_time", "amplitude_time", "acceleration_amplitude_time", "contact_amplitude_time",
+    "friction_amplitude_time", "end_time", "asleep_time", "first_motion", "period",
+)  # fmt: skip
+
+#: Variables with a counterpart in SI units, by measure.
+IN_SI = {
+    "length": (
+        "x", "z", "y", "amplitude", "contact_amplitude", "x_max", "x_min", "z_max", "z_min", "residual",
+        "contact_residual", "sliding_distance", "largest_slide",
+    ),
+    "velocity": ("v",),
+    "acceleration": ("acceleration", "acceleration_amplitude", "acceleration_max", "acceleration_min"),
+    "force": (
+        "friction", "friction_amplitude", "friction_max", "friction_min", "base_force", "base_force_max",
+        "base_force_min", "spring_force", "beta_hold",
+    ),
+    "work": ("work_load", "work_friction", "work_damping", "work_walls", "energy"),
+}  # fmt: skip
+
+_SI_UNITS = {
+    "length": ("m", "m"), "velocity": ("m s-1", "m_s"), "acceleration": ("m s-2", "m_s2"),
+    "force": ("N", "N"), "work": ("J", "J"),
+}  # fmt: skip
+
+
+def si_name(name: str, measure: str) -> str:
+    """Name of a variable in its SI unit."""
+    return f"{name}_{_SI_UNITS[measure][1]}"
+
+
+def _si_label(name: str, measure: str) -> Label:
+    label = MOTIONS[name]
+    return label._replace(
+        long_name=label.long_name.split(", over ")[0], comment="", units=_SI_UNITS[measure][0]
+    )
+
+
+SI_LABELS = {
+    si_name(name, measure): _si_label(name, measure) for measure, names in IN_SI.items() for name in names
+}
+
+
+def motion_labels() -> dict[str, Label]:
+    """Labels of all variables and axes."""
+    return {**MOTIONS, **SI_LABELS}

@@ -1,0 +1,128 @@
+"""Standard form, tables and summaries of motions in time."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..datasets.labels import attributes
+from ..datasets.motion_labels import CELL, OF_CONTACTS, STATUSES, motion_labels, si_name
+from ..datasets.schema import checked_values
+from ..errors import InputError
+
+#: Width of the first column of a summary.
+_WIDTH = 34
+
+#: Coordinates that are not axes of the same name.
+_BESIDE = ("contact_name", "record_name")
+
+#: Motions of a summary at most.
+_MOST_LINES = 8
+
+
+def _dims(name: str, variable: xr.Variable) -> tuple[str, ...]:
+    dims = motion_labels()[name].dims
+    own = next((old for old in OF_CONTACTS if name == old or name.startswith(f"{old}_")), None)
+    if own is not None and "contact" in variable.dims:
+        return (*dims[:4], "contact", *dims[4:])
+    return dims
+
+
+def motions_form(ds: xr.Dataset) -> xr.Dataset:
+    """Motions in the form that they were made in; their structure has been checked.
+
+    Raises
+    ------
+    InputError
+        A value is invalid; the message names the variable.
+    """
+    ds = ds.expand_dims([dim for dim in (*CELL, "dof", "period") if dim in ds.coords and dim not in ds.dims])
+    variables = {}
+    for name in motion_labels():
+        if name not in ds.variables:
+            continue
+        dims = tuple(dim for dim in _dims(name, ds[name].variable) if dim in ds[name].dims)
+        extra = [dim for dim in ds[name].dims if dim not in (*dims, "period")]
+        if extra:
+            raise InputError(f"{name} must have the dimensions {', '.join(dims)}; got also {extra[0]}")
+        values = ds[name].variable.transpose(..., *dims)
+        label = motion_labels()[name]
+        attrs = ds[name].attrs or attributes(label)
+        variables[name] = xr.Variable(values.dims, checked_values(name, values.values, "history"), attrs)
+    coords = {name: variables.pop(name) for name in (*ds.coords, *_BESIDE) if name in variables}
+    return xr.Dataset(variables, coords, ds.attrs)
+
+
+def describe_motions(ds: xr.Dataset) -> list[str]:
+    """Describe motions in a few lines: what the contacts do, peaks, place of rest."""
+    shape = [range(ds.sizes[dim]) for dim in CELL if dim in ds.dims]
+    cells = list(np.ndindex(*[len(one) for one in shape]))
+    lines = []
+    for cell in cells[:_MOST_LINES]:
+        one = ds.isel(dict(zip([dim for dim in CELL if dim in ds.dims], cell, strict=True)))
+        lines += [*_heading(one, len(cells)), *(f"{name:<{_WIDTH}} {text}" for name, text in _rows(one))]
+    if len(cells) > _MOST_LINES:
+        lines.append(f"... and {len(cells) - _MOST_LINES} further motions")
+    return lines
+
+
+def _heading(one: xr.Dataset, count: int) -> list[str]:
+    if count == 1:
+        return []
+    name = str(one["record_name"].values) if "record_name" in one.coords else f"record {int(one['record'])}"
+    return [f"{name}, scale {float(one['scale']):g}, mu {float(one['mu']):g}, beta {float(one['beta']):g}"]
+
+
+def _listed(values: Any, unit: str = "") -> str:
+    text = ", ".join(f"{value:.4g}" for value in np.atleast_1d(values).ravel().tolist())
+    return f"{text} {unit}".rstrip()
+
+
+def _measured(one: xr.Dataset, name: str, measure: str, unit: str) -> str:
+    """Values in SI units where they are there, else the ratios."""
+    beside = si_name(name, measure)
+    return _listed(one[beside].values, unit) if beside in one else _listed(one[name].values)
+
+
+_ROWS = (
+    ("largest displacement", "amplitude", "length", "m"),
+    ("largest absolute acceleration", "acceleration_amplitude", "acceleration", "m/s2"),
+    ("largest force on the base", "base_force", "force", "N"),
+    ("place of rest", "residual", "length", "m"),
+    ("sliding distance", "sliding_distance", "length", "m"),
+    ("work lost in the contact", "work_friction", "work", "J"),
+)
+
+
+def _rows(one: xr.Dataset) -> Iterator[tuple[str, str]]:
+    code = STATUSES[int(one["status"])]
+    yield "status", code.name if code.value == 0 else f"{code.name}: {code.meaning}"
+    for name, words in (("stops", "stops"), ("slips", "slips"), ("turns", "turns")):
+        if name in one and np.isfinite(one[name].values).any():
+            yield words, _listed(one[name].values)
+    for words, name, measure, unit in _ROWS:
+        if name in one and np.isfinite(one[name].values).any():
+            yield words, _measured(one, name, measure, unit)
+    if "beta_hold" in one and np.isfinite(one["beta_hold"].values).any():
+        yield "nothing moves from friction", _measured(one, "beta_hold", "force", "N")
+    if np.isfinite(one["asleep_time"]):
+        unit = "s" if one["asleep_time"].attrs.get("units") == "s" else ""
+        yield "at rest for good after", _listed(one["asleep_time"].values, unit)
+
+
+def table_of(ds: xr.Dataset) -> Any:
+    """Data frame: of one motion a row for every time, of several a row for every motion."""
+    single = all(ds.sizes.get(dim, 1) == 1 for dim in CELL)
+    if single and "time" in ds.dims:
+        one = ds.squeeze([dim for dim in CELL if dim in ds.dims], drop=True)
+        names = [name for name in one.data_vars if "time" in one[name].dims]
+    else:
+        one, names = ds, [name for name in ds.data_vars if not set(ds[name].dims) - {*CELL, "dof", "contact"}]
+    columns = {}
+    for name in names:
+        parts = [dim for dim in ("dof", "contact") if dim in one[name].dims]
+        for k in range(one.sizes[parts[0]]) if parts else (None,):
+            own = one[name] if k is None else one[name].isel({parts[0]: k}, drop=True)
+            columns[str(name) if k is None else f"{name}_{k + 1}"] = own
+    return xr.Dataset(columns).to_dataframe()

@@ -1,0 +1,373 @@
+"""`history`: motions in time as labelled variables."""
+
+from collections.abc import Callable, Mapping, Sequence
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from .. import checks
+from ..datasets.labels import attributes
+from ..datasets.motion_labels import MOTIONS, OF_CONTACTS
+from ..errors import InputError
+from ..general.dataset import refuse_static
+from ..jobs import Progress, Watch
+from ..model.system import System
+from .cells import Asked, Found, Motions, run_all
+from .channels import Scale, checked_record, drive_of
+from .record import Record
+from .starts import start_of
+from .structure import Structure, structure_of
+
+#: Peaks that are given by their names, and the variables of their largest moduli.
+_PEAKS = {
+    "x": "amplitude", "z": "contact_amplitude", "acceleration": "acceleration_amplitude",
+    "friction": "friction_amplitude", "base_force": "base_force", "spring_force": "spring_force",
+}  # fmt: skip
+
+#: Those of which both ends are given, and those of which the time is.
+_BOTH_ENDS = ("x", "z", "acceleration", "friction", "base_force")
+_TIMED = ("x", "z", "acceleration", "friction")
+
+
+class Grid(NamedTuple):
+    """The motions that are wanted."""
+
+    records: tuple[Record, ...]
+    scale: np.ndarray
+    mu: np.ndarray
+    beta: np.ndarray
+
+    @property
+    def shape(self) -> tuple[int, int, int, int]:
+        """Number of records, scales, mu and beta."""
+        return len(self.records), self.scale.size, self.mu.size, self.beta.size
+
+
+def _axis(given: Any, name: str, **ends: float) -> np.ndarray:
+    values = np.atleast_1d(checks.array(given, name))
+    if values.ndim != 1 or not values.size:
+        raise InputError(name, f"must be a number or a list of numbers; got {checks.one_line(given)}")
+    found = np.array(
+        [checks.number(value, f"{name}[{k}]", **ends) for k, value in enumerate(values.tolist())]
+    )
+    if (np.diff(found) <= 0.0).any():
+        raise InputError(name, f"must increase; got {checks.one_line(found.tolist())}")
+    return found
+
+
+def _records(given: Any) -> tuple[Record, ...]:
+    listed = given if isinstance(given, Sequence) else (given,)
+    if not listed:
+        raise InputError("record", "must be a Record or a list of them; got none")
+    names = ["record"] if listed is not given else [f"record[{k}]" for k in range(len(listed))]
+    return tuple(checked_record(one, name) for one, name in zip(listed, names, strict=True))
+
+
+def _after(given: Any) -> float | None:
+    if isinstance(given, str):
+        if given != "rest":
+            raise InputError("after", f'must be "rest" or a time >= 0 after the record; got {given!r}')
+        return None
+    return checks.number(given, "after", least=0.0)
+
+
+def _every(given: Any, grid: Grid) -> int:
+    """Samples between two states that are kept; 0: none."""
+    if isinstance(given, str):
+        checks.choice(given, "samples", ("all", "none"))
+        every = 1 if given == "all" else 0
+    else:
+        every = checks.whole(given, "samples", least=1)
+    steps = {float(one.pieces.steps[0]) for one in grid.records}
+    if (
+        every
+        and len(grid.records) > 1
+        and (len(steps) > 1 or any(np.ptp(one.pieces.steps) != 0.0 for one in grid.records))
+    ):
+        raise InputError(
+            "samples",
+            f'must be "none" for records with different steps, which have no common times; got {given!r}',
+        )
+    return every
+
+
+def history(
+    system: System,
+    record: Record | Sequence[Record],
+    beta: ArrayLike | None = None,
+    mu: ArrayLike = 1.0,
+    *,
+    scale: ArrayLike = 1.0,
+    start: str | Mapping[str, Any] | xr.Dataset = "rest",
+    after: str | float = "rest",
+    samples: str | int = "all",
+    threads: int | None = None,
+    progress: Progress | None = None,
+    watch: Watch | None = None,
+) -> xr.Dataset:
+    """Follow motions in time under records: histories, peaks, events, energies, place of rest.
+
+    Between samples and events everything is linear, so that motions are exact to rounding.
+
+    Parameters
+    ----------
+    system : System
+        Its load is not used; with excitation "base" and damping_reference "ground" the damping acts on
+        absolute velocities.
+    record : Record or sequence of Record
+        Load, or motion of the base, over time; masses then move relative to the base.
+    beta : array_like
+        Ratios of kinetic friction force to P [-], >= 0, increasing; default 1.
+    mu : array_like
+        Ratios of static to kinetic friction [-], >= 1, increasing.
+    scale : array_like
+        Factors of the records, increasing.
+    start : "rest", mapping or Dataset
+        ``{"x": [...], "v": [...]}``: displacements and velocities of the masses; or the last state of a
+        `history`, or the state at tau = 0 of a `response`.
+    after : "rest" or float
+        How long the motion is followed after the record, without load: until no contact can move again,
+        which is proved by the energy, or a time.
+    samples : "all", int or "none"
+        Which samples of the histories are kept: all, every so many, none.  A single motion has both sides of
+        all events, too.
+    threads : int, optional
+        Number of threads; default: all processors.  The result is equal to the bit for any number.
+    progress, watch : callable, optional
+        As in `sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (record, scale, mu, beta), and (dof, time), (contact, time), (event): see the manual.
+
+    Raises
+    ------
+    InputError
+        An argument has the wrong type or is out of range.
+
+    Examples
+    --------
+    A block on a table under half a second of 3 m/s^2, with friction for 1 m/s^2, dimensionless:
+
+    >>> import frictionmap as fm
+    >>> pulse = fm.Record([0.0, 1.0, 0.0], dt=1.0, quantity="force")
+    >>> ds = fm.history(fm.System(), pulse, beta=[0.2])
+    >>> int(ds.stops.squeeze())
+    1
+    """
+    checks.instance(system, "system", System)
+    grid = Grid(
+        _records(record), _axis(scale, "scale"), _axis(mu, "mu", least=1.0),
+        _axis(1.0 if beta is None else beta, "beta", least=0.0),
+    )  # fmt: skip
+    structure = structure_of(system)
+    refuse_static(structure.system.contact_system, grid.mu)
+    asked = Asked(start_of(structure, start), _after(after), _every(samples, grid))
+    single = int(np.prod(grid.shape)) == 1
+    found = _follow(structure, grid, asked, single, threads, progress, watch)
+    ds = _labelled(structure, grid, asked, found)
+    return ds
+
+
+class Followed(NamedTuple):
+    """All motions of a grid."""
+
+    motions: list[Motions]  # of every record
+    found: np.ndarray  # of Found, the shape of the grid
+    hold: np.ndarray  # (records, N) largest force in every contact with all held
+
+
+def _follow(
+    structure: Structure, grid: Grid, asked: Asked, single: bool, threads: int | None,
+    progress: Progress | None, watch: Watch | None,
+) -> Followed:  # fmt: skip
+    general = structure.system.contact_system
+    motions = [Motions(structure, drive_of(structure.system, one, Scale(1.0, 1.0))) for one in grid.records]
+    found = np.empty(grid.shape, dtype=object)
+    hold = np.empty((len(motions), general.count))
+
+    def task(i: int, k: int, m: int, b: int) -> Callable[[], None]:
+        def run() -> None:
+            pairs = [group.friction(grid.beta[b], grid.mu[m]) for group in general.groups]
+            kinetic, static = np.array(pairs, dtype=float).T
+            found[i, k, m, b] = motions[i].follow(kinetic, static, float(grid.scale[k]), asked, single)
+
+        return run
+
+    def hold_task(i: int) -> Callable[[], None]:
+        def run() -> None:
+            hold[i] = motions[i].hold(asked)
+
+        return run
+
+    tasks = [task(*index) for index in product(*map(range, grid.shape))]
+    tasks += [hold_task(i) for i in range(len(motions))]
+    run_all(tasks, checks.threads(threads), progress, watch)
+    return Followed(motions, found, hold)
+
+
+def _peaks(structure: Structure, motions: Motions, one: Found) -> dict[str, np.ndarray]:
+    found = {}
+    low, high = one.kept.peaks[0], one.kept.peaks[1]
+    for name, largest in _PEAKS.items():
+        rows = motions.watched.places[name]
+        if rows.stop == rows.start:
+            continue
+        found[largest] = np.maximum(np.abs(low[rows]), np.abs(high[rows]))
+        if name in _BOTH_ENDS:
+            found[f"{name}_max"], found[f"{name}_min"] = high[rows], low[rows]
+        if name in _TIMED:
+            up = np.abs(high[rows]) >= np.abs(low[rows])
+            found[f"{largest}_time"] = np.where(up, one.kept.times[1, rows], one.kept.times[0, rows])
+    for name in ("base_force", "base_force_max", "base_force_min"):
+        found[name] = found[name][0]
+    return found
+
+
+def _energy(structure: Structure, motions: Motions, q: np.ndarray, p: np.ndarray, f: np.ndarray) -> float:
+    springs = structure.spring > 0.0
+    stored = 0.5 * float((f[springs] ** 2 / structure.spring[springs]).sum())
+    return 0.5 * float(p @ p + motions.problem.squares @ q**2) + stored
+
+
+def _scalars(structure: Structure, motions: Motions, one: Found, asked: Asked) -> dict[str, Any]:
+    """Numbers of one motion: of all, of each contact, of each mass."""
+    kept, phi = one.kept, structure.modal.phi
+    elastic = structure.spring > 0.0
+    stops = kept.changes[0]
+    start = asked.start
+    energy = _energy(structure, motions, one.state[0], one.state[1], kept.forces)
+    before = _energy(structure, motions, start.q, start.p, start.f)
+    walls = float(kept.works[1] + kept.record.works[1].sum())
+    rests = one.place is not None
+    return _peaks(structure, motions, one) | {
+        "residual": phi @ one.place if rests else np.full(len(phi), np.nan),
+        "contact_residual": motions.contact_places(one) if rests else np.full(elastic.size, np.nan),
+        "stops": np.where(elastic, np.nan, stops), "slips": np.where(elastic, stops, np.nan),
+        "turns": kept.changes[2], "stuck_fraction": one.counts[2] / one.end if one.end else 1.0 + 0.0 * stops,
+        "sliding_distance": kept.record.distance, "largest_slide": kept.slides[1],
+        "work_load": kept.works[0], "work_friction": kept.record.works[0], "work_walls": walls,
+        "work_damping": kept.works[0] + walls - kept.record.works[0].sum() - (energy - before),
+        "energy": energy, "events": kept.counts[0], "end_time": one.end,
+        "asleep_time": one.asleep,
+        "first_motion": kept.events[0, 0] if kept.counts[0] else np.nan, "status": one.status,
+    }  # fmt: skip
+
+
+def _traces(structure: Structure, motions: Motions, one: Found) -> dict[str, np.ndarray]:
+    """Histories of one motion: (..., time)."""
+    m, contacts = structure.modal.chi.shape[1], structure.spring.size
+    states = one.kept.states[: one.kept.counts[1]].T
+    columns = states[1:]
+    places = motions.watched.places
+    values = motions.watched.weights @ columns
+    z, f = values[places["z"]], columns[2 * m : 2 * m + contacts]
+    kt = structure.spring[:, np.newaxis]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slider = np.where(kt > 0.0, z - f / kt, np.nan)
+    return {
+        "time": states[0], "x": values[places["x"]], "v": structure.modal.phi @ columns[m : 2 * m],
+        "acceleration": values[places["acceleration"]], "z": z, "friction": f,
+        "direction": one.kept.senses[: one.kept.counts[1]].T, "y": slider,
+    }  # fmt: skip
+
+
+def _stacked(values: list[np.ndarray], shape: tuple[int, ...], fill: float) -> np.ndarray:
+    """Arrays of all motions as one; the last dimension is padded."""
+    longest = max(value.shape[-1] for value in values)
+    padded = [
+        np.concatenate((value, np.full((*value.shape[:-1], longest - value.shape[-1]), fill)), axis=-1)
+        for value in values
+    ]
+    return np.array(padded).reshape((*shape, *padded[0].shape))
+
+
+def _variable(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
+    label = MOTIONS[name]
+    dims = list(label.dims)
+    if name in OF_CONTACTS:
+        at = 4
+        if contacts == 1:
+            values = values.reshape((*values.shape[:at], *values.shape[at + 1 :]))
+        else:
+            dims.insert(at, "contact")
+    return xr.Variable(dims, values.astype(label.dtype), attributes(label))
+
+
+def _hold(structure: Structure, grid: Grid, forces: np.ndarray) -> np.ndarray:
+    """beta from which no contact ever moves, (records, scales, mu)."""
+    found = np.zeros(grid.shape[:3])
+    for j, group in enumerate(structure.system.contact_system.groups):
+        for m, mu in enumerate(grid.mu):
+            _, fixed = group.friction(0.0, mu)
+            _, one = group.friction(1.0, mu)
+            needed = np.abs(grid.scale)[np.newaxis] * forces[:, j, np.newaxis] - fixed
+            own = np.where(needed <= 0.0, 0.0, needed / (one - fixed) if one > fixed else np.inf)
+            found[:, :, m] = np.maximum(found[:, :, m], own)
+    return found
+
+
+def _labelled(structure: Structure, grid: Grid, asked: Asked, followed: Followed) -> xr.Dataset:
+    general = structure.system.contact_system
+    contacts, elastic = general.count, general.elastic
+    cells = list(product(*map(range, grid.shape)))
+    ones = [(followed.motions[cell[0]], followed.found[cell]) for cell in cells]
+    table = [_scalars(structure, motions, one, asked) for motions, one in ones]
+    variables = {}
+    for name in table[0]:
+        if (name == "slips" and not elastic.any()) or (name == "stops" and elastic.all()):
+            continue
+        values = np.array([row[name] for row in table], dtype=float)
+        variables[name] = _variable(name, values.reshape((*grid.shape, *values.shape[1:])), contacts)
+    coords = _coordinates(structure, grid)
+    if asked.every:
+        traces = [_traces(structure, motions, one) for motions, one in ones]
+        longest = max(traces, key=lambda trace: trace["time"].size)
+        coords["time"] = xr.Variable("time", longest["time"], attributes(MOTIONS["time"]))
+        for name in ("x", "v", "acceleration", "z", "friction", "direction", "y"):
+            if name == "y" and not elastic.any():
+                continue
+            fill = 0.0 if name == "direction" else np.nan
+            stacked = _stacked([trace[name] for trace in traces], grid.shape, fill)
+            variables[name] = _variable(name, stacked, contacts)
+    variables |= _events([one for _, one in ones], grid.shape)
+    hold = np.full(grid.shape[:3], np.nan)
+    if not asked.start.moves:
+        hold = _hold(structure, grid, followed.hold)
+    variables["beta_hold"] = xr.Variable(MOTIONS["beta_hold"].dims, hold, attributes(MOTIONS["beta_hold"]))
+    return xr.Dataset(variables, coords)
+
+
+def _events(ones: list[Found], shape: tuple[int, ...]) -> dict[str, xr.Variable]:
+    tables = [one.kept.events[: one.kept.counts[0]] for one in ones]
+    times = _stacked([table[:, 0] for table in tables], shape, np.nan)
+    numbers = _stacked([table[:, 1] + 1.0 for table in tables], shape, 0.0)
+    kinds = _stacked([table[:, 2] for table in tables], shape, -1.0)
+    return {
+        name: _variable(name, values, 1)
+        for name, values in (("event_time", times), ("event_contact", numbers), ("event_kind", kinds))
+    }
+
+
+def _coordinates(structure: Structure, grid: Grid) -> dict[str, xr.Variable]:
+    general = structure.system.contact_system
+    own: dict[str, Any] = {
+        "record": np.arange(1, len(grid.records) + 1), "scale": grid.scale, "mu": grid.mu,
+        "beta": grid.beta, "dof": np.array(structure.system.dofs.numbers),
+    }  # fmt: skip
+    names = [one.name or one.quantity for one in grid.records]
+    own["record_name"] = np.array(names, dtype=np.str_)
+    if general.count > 1:
+        own["contact"] = np.arange(1, general.count + 1)
+        own["contact_name"] = np.array([group.name for group in general.groups], dtype=np.str_)
+    found = {}
+    for name, values in own.items():
+        attrs = attributes(MOTIONS[name])
+        if MOTIONS[name].dtype is np.str_:
+            attrs.pop("units")
+        found[name] = xr.Variable(MOTIONS[name].dims, values, attrs)
+    return found

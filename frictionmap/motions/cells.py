@@ -14,11 +14,14 @@ from .channels import Drive
 from .starts import Start
 from .structure import Structure, held_of, problem_of, watched_of
 
-#: Events and states that there is room for at first.
-_FIRST = 256
+#: Events and states that there is room for at first, and samples per event beyond these.
+_FIRST, _SAMPLES_PER_EVENT = 256, 4
 
 #: Intervals after a record that a motion is followed to its rest.
 _MOST_AFTER = 200_000
+
+#: Rounding error of a sum, relative to its terms.
+_ROUNDING = 2.0**-50
 
 _CREEPS = 2  # the status
 
@@ -91,26 +94,36 @@ class Motions:
         friction = Friction(np.ascontiguousarray(kinetic), np.ascontiguousarray(static))
         start = _starting(self.structure, asked.start)
         bed = self.held.bed
-        most = (
-            _FIRST
-            if asked.every == 0
-            else _FIRST + steps.size // asked.every + int(limits[1] * (1 - limits[2]))
-        )
+        samples = int(limits[0]) and steps.size // int(limits[0]) + int(limits[1] * (1 - limits[2]))
+        events = _FIRST + steps.size // _SAMPLES_PER_EVENT
+        room = np.array([events, samples and samples + 2 * events * int(limits[3]) + _FIRST])
+        rounding = self._rounding(static, scale)
         while True:
             masses = np.empty((0, self.problem.squares.size))
-            kept = make_kept(self.problem, self.watched.weights, make_record(self.problem, masses, 0), most)
+            kept = make_kept(
+                self.problem, self.watched.weights, rounding, make_record(self.problem, masses, 0), room
+            )
             memory = make_memory(self.problem, self.watched.weights.shape[0], self._even)
             status, counts, state, sense, done, asleep = follow_record(
                 self.problem, memory, friction, start, asked.start.sense, terms, steps, self.drive.times,
                 self.drive.jumps, kept, bed, limits,
             )  # fmt: skip
-            needed = int(kept.counts.max())
-            if needed <= most:
+            if (kept.counts <= room).all():
                 break
-            most = needed
+            room = np.maximum(room, kept.counts)
         end, slept = (self._time(k, steps) for k in (done, asleep))
         found = Found(int(status), kept, counts, state, sense, end, slept if asleep >= 0 else np.nan, None)
         return found._replace(place=self._place(found))
+
+    def _rounding(self, static: np.ndarray, scale: float) -> np.ndarray:
+        """Rounding errors of the watched quantities, from the sizes of what they are sums of."""
+        problem = self.problem
+        size = problem.sizes[0] * abs(scale)
+        loads = np.abs(self.drive.terms).sum(axis=2).max(axis=0) * max(1.0, abs(scale))
+        modes = np.full(problem.squares.size, size)
+        forces = np.minimum(static, float(np.abs(problem.push).sum(axis=0) @ loads))
+        units = np.concatenate((modes, modes * problem.rates[0], forces, loads))
+        return _ROUNDING * (np.abs(self.watched.weights) @ units)
 
     def _time(self, intervals: int, steps: np.ndarray) -> float:
         """Time after so many intervals."""

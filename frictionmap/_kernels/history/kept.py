@@ -32,26 +32,27 @@ class Kept(NamedTuple):
     """
 
     weights: np.ndarray  # (Q, 2 m + N + D) of the quantities
+    rounding: np.ndarray  # (Q,) rounding errors of the quantities: peaks are not looked for within them
     peaks: np.ndarray  # (4, Q) lowest, highest, and where in the step they are
     times: np.ndarray  # (2, Q) when they are
     record: Record  # sliding distances and works of the contacts
     works: np.ndarray  # (2,) of the load, and of the walls that move with the base
     slides: np.ndarray  # (2, N)
     changes: np.ndarray  # (3, N) stops, starts, turns
-    events: np.ndarray  # (most, 3)
-    states: np.ndarray  # (most, 1 + 2 m + N + D) time, q, q', f, L
-    senses: np.ndarray  # (most, N)
-    counts: np.ndarray  # (2,) int: events and states there were; more than `most` do not fit
+    events: np.ndarray  # (room, 3)
+    states: np.ndarray  # (room, 1 + 2 m + N + D) time, q, q', f, L
+    senses: np.ndarray  # (room, N)
+    counts: np.ndarray  # (2,) int: events and states there were; those beyond the room are not listed
     ends: np.ndarray  # (Q,) the watched quantities at the end of the interval
     forces: np.ndarray  # (N,) forces in the contacts there
     clock: np.ndarray  # (1,) time at the beginning of the interval
 
 
 @entry
-def make_kept(problem, weights, record, most):
-    """Allocate it for `most` events and as many states.
+def make_kept(problem, weights, rounding, record, room):
+    """Allocate it for so many events and states (`room`, (2,) int).
 
-    weights : see `Kept`; record : of no masses, see `general.record.make_record`
+    weights, rounding : see `Kept`; record : of no masses, see `general.record.make_record`
     """
     contacts, modes = problem.chi.shape
     columns = 1 + 2 * modes + contacts + problem.push.shape[1]
@@ -59,9 +60,9 @@ def make_kept(problem, weights, record, most):
     peaks = np.zeros((4, watched))
     peaks[LOW], peaks[HIGH] = np.inf, -np.inf
     return Kept(
-        weights, peaks, np.zeros((2, watched)), record, np.zeros(2), np.zeros((2, contacts)),
-        np.zeros((3, contacts)), np.zeros((most, 3)), np.zeros((most, columns)),
-        np.zeros((most, contacts), np.int8), np.zeros(2, np.int64),
+        weights, rounding, peaks, np.zeros((2, watched)), record, np.zeros(2), np.zeros((2, contacts)),
+        np.zeros((3, contacts)), np.zeros((room[0], 3)), np.zeros((room[1], columns)),
+        np.zeros((room[1], contacts), np.int8), np.zeros(2, np.int64),
         np.full(watched, np.nan), np.zeros(contacts), np.zeros(1),
     )  # fmt: skip
 

@@ -50,10 +50,6 @@ _MOST_SETS, _MOST_NUMBERS = 64, 1 << 22
 _HERMITE, _OVERSHOOT = 1.0 / 384.0, 1.0 / 8.0
 
 
-#: A value this share above a peak is that peak, with the rounding error of another sum.
-_SAME = 2.0**-50
-
-
 class Tables(NamedTuple):
     """Tables of S sets of held contacts; U units, B rows of parts, G rows of bounds, filled up to vectors."""
 
@@ -309,9 +305,9 @@ def pass_by_tables(problem, row, friction, motion, counts, kept, tables):
         reach, end = tables.most[contacts + i], tables.sums[first + i]
         # the value at the beginning was included by the interval before, or is that of the start or a jump
         begin, low, high = kept.ends[i], kept.peaks[LOW, i], kept.peaks[HIGH, i]
-        if not (low - _SAME * abs(low) <= min(begin, end) - reach):
+        if not (low - kept.rounding[i] <= min(begin, end) - reach):
             return False
-        if not (max(begin, end) + reach <= high + _SAME * abs(high)):
+        if not (max(begin, end) + reach <= high + kept.rounding[i]):
             return False
     _take(problem, row, friction, motion, counts, kept, tables)
     return True

@@ -17,6 +17,7 @@ structure          the same for any structure, with its oscillators and states
 logs               numbers of every cycle of a motion that does not repeat, their means and errors
 long_periods       when a motion is searched for a long period, and when it is taken as irregular
 general            any number of contacts, springs in contacts, belts, periodic loads
+history            motions in time under records
 engine             solver of cells: recurrence, periodic orbits, outputs, stability, coexistence
 =================  =====================================================================================
 """

@@ -6,8 +6,8 @@ module      what is in it
 pieces      polynomials over the intervals of a record: interpolation, derivatives, integrals
 record      `Record`: a load or a base motion over time
 channels    what a record drives: loads on the masses, walls, normal loads
-structure   a system under channels as arrays for the kernels, and what is watched of it
 bed         the structure with all contacts held under no load: place of rest, asleep or not
+structure   a system under channels as arrays for the kernels, and what is watched of it
 starts      states at the beginning: at rest, given, or where another motion ended
 cells       the motions of a grid of records, scales and friction, on several threads
 dataset     `history`: motions in time as labelled variables

@@ -8,7 +8,7 @@ import numpy as np
 from .._kernels.general.record import make_record
 from .._kernels.general.series import Friction
 from .._kernels.history.kept import Kept, make_kept
-from .._kernels.history.motion import follow_record, make_memory
+from .._kernels.history.motion import Course, follow_record, make_memory
 from ..jobs import Progress, Watch, run_jobs
 from .channels import Drive
 from .starts import Start
@@ -98,21 +98,24 @@ class Motions:
         events = _FIRST + steps.size // _SAMPLES_PER_EVENT
         room = np.array([events, samples and samples + 2 * events * int(limits[3]) + _FIRST])
         rounding = self._rounding(static, scale)
+        course = Course(np.ascontiguousarray(terms), steps, self.drive.times, self.drive.jumps)
         while True:
             masses = np.empty((0, self.problem.squares.size))
-            kept = make_kept(
-                self.problem, self.watched.weights, rounding, make_record(self.problem, masses, 0), room
-            )
+            record = make_record(self.problem, masses, 0)
+            kept = make_kept(self.problem, self.watched.weights, rounding, record, room)
             memory = make_memory(self.problem, self.watched.weights.shape[0], self._even)
-            status, counts, state, sense, done, asleep = follow_record(
-                self.problem, memory, friction, start, asked.start.sense, terms, steps, self.drive.times,
-                self.drive.jumps, kept, bed, limits,
-            )  # fmt: skip
+            status, done, asleep = follow_record(
+                self.problem, friction, memory, course, start, asked.start.sense, kept, bed, limits
+            )
             if (kept.counts <= room).all():
                 break
             room = np.maximum(room, kept.counts)
+        motion = memory.motion
+        state = motion.state[:2, : self.problem.squares.size]
         end, slept = (self._time(k, steps) for k in (done, asleep))
-        found = Found(int(status), kept, counts, state, sense, end, slept if asleep >= 0 else np.nan, None)
+        found = Found(
+            int(status), kept, memory.counts, state, motion.sense, end, slept if asleep >= 0 else np.nan, None
+        )
         return found._replace(place=self._place(found))
 
     def _rounding(self, static: np.ndarray, scale: float) -> np.ndarray:
@@ -126,7 +129,7 @@ class Motions:
         return _ROUNDING * (np.abs(self.watched.weights) @ units)
 
     def _time(self, intervals: int, steps: np.ndarray) -> float:
-        """Time after so many intervals."""
+        """Time after a number of intervals."""
         last = steps.size - 1
         return float(self.drive.times[min(intervals, last)] + max(0, intervals - last) * steps[-1])
 

@@ -50,7 +50,7 @@ class Kept(NamedTuple):
 
 @entry
 def make_kept(problem, weights, rounding, record, room):
-    """Allocate it for so many events and states (`room`, (2,) int).
+    """Allocate it for the numbers of events and states in `room`.
 
     weights, rounding : see `Kept`; record : of no masses, see `general.record.make_record`
     """
@@ -175,7 +175,7 @@ def keep_step(problem, row, motion, begin, end, kept):
 
 
 @kernel
-def keep_state(problem, row, motion, x, at, kept):
+def keep_present(problem, row, motion, x, at, kept):
     """Keep the state at `at` of the present step, which is at x in the interval."""
     keep_ends(problem, motion, at, kept)
     store_state(problem, row, motion, x, kept)

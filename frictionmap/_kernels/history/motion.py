@@ -19,7 +19,7 @@ from ..general.record import clear_record
 from ..general.row import make_motion, make_row, set_channels, set_interval
 from ..general.series import advance, expand, factor_held
 from .asleep import is_asleep
-from .kept import keep_ends, keep_state, keep_step, list_changes, store_state
+from .kept import keep_ends, keep_present, keep_step, list_changes, store_state
 from .tables import Tables, forget, has_tables, make_tables, pass_by_tables
 
 #: What became of a motion.
@@ -43,6 +43,10 @@ _CREEP = 1e-15
 #: Row of the scratch for the senses before an event.
 _SENSE = 7
 
+#: Places in `limits`: number of samples from a kept state to the next, 0: none; intervals after the record at
+#: most; whether to end when asleep; whether states at events are kept.
+EVERY, AFTER, TO_REST, LISTED = 0, 1, 2, 3
+
 
 class Memory(NamedTuple):
     """Memory of a motion."""
@@ -50,13 +54,28 @@ class Memory(NamedTuple):
     row: Row
     motion: Motion
     tables: Tables
+    box: np.ndarray  # (BOX_ROWS, N) scratch of `settle`
+    counts: np.ndarray  # (COUNT_ROWS, N) counters
+
+
+class Course(NamedTuple):
+    """A record in K - 1 intervals, and the one after it, which is repeated."""
+
+    pieces: np.ndarray  # (K, D, PIECE_TERMS) polynomials of the channels over the interval
+    steps: np.ndarray  # (K,) lengths of the intervals
+    times: np.ndarray  # (K,) when they begin
+    jumps: np.ndarray  # (K,) bool: whether a channel jumps where the interval begins
 
 
 @entry
 def make_memory(problem, watched, wanted):
     """Allocate it; see `tables.make_tables`."""
     tables = make_tables(problem, watched, wanted and has_tables(problem))
-    return Memory(make_row(problem), make_motion(problem), tables)
+    contacts = problem.spring.size
+    return Memory(
+        make_row(problem), make_motion(problem), tables, np.zeros((BOX_ROWS, contacts)),
+        np.zeros((COUNT_ROWS, contacts)),
+    )  # fmt: skip
 
 
 @kernel
@@ -85,20 +104,21 @@ def _next_event(problem, friction, motion, end, sample):
 
 
 @kernel
-def _cross(problem, row, friction, motion, box, counts, kept, sample, jumped, keeps):
-    """Follow the motion through one interval, or an equal part of one; the polynomials are in `row.loads`.
+def _cross(problem, friction, memory, kept, sample, jumped, listed):
+    """Follow the motion by its series through one interval, or an equal part of one.
 
     Parameters
     ----------
-    problem, row, friction, motion, box, counts, kept : see `follow_record`
+    problem, friction, memory, kept : see `follow_record`; the polynomials are in `row.loads`
     sample : whether the part ends at a sample
     jumped : whether the load has jumped at the beginning
-    keeps : (whether the states at events are kept, whether that at the end is)
+    listed : whether the states at events are kept
 
     Returns
     -------
     int : RESOLVED, TOO_MANY_EVENTS or UNDETERMINED
     """
+    row, motion, counts = memory.row, memory.motion, memory.counts
     h = row.numbers[H]
     x = 0.0
     motion.clock[0] = math.nan
@@ -106,8 +126,8 @@ def _cross(problem, row, friction, motion, box, counts, kept, sample, jumped, ke
     for k in range(_MOST_EVENTS):
         rest = 1.0 - x
         expand(problem, row, friction, x * h, 0 if x == 0.0 else -1, motion, True)
-        if keeps[0] and (k > 0 or jumped):
-            keep_state(problem, row, motion, x, 0.0, kept)
+        if listed and (k > 0 or jumped):
+            keep_present(problem, row, motion, x, 0.0, kept)
         event = _next_event(problem, friction, motion, rest, sample)
         step = min(event[0], rest)
         if step > 0.0:
@@ -119,12 +139,12 @@ def _cross(problem, row, friction, motion, box, counts, kept, sample, jumped, ke
         if event[1] < 0:
             keep_ends(problem, motion, step, kept)
             return RESOLVED
-        if keeps[0]:
-            keep_state(problem, row, motion, x + step, step, kept)
+        if listed:
+            keep_present(problem, row, motion, x + step, step, kept)
         for j in range(motion.sense.size):
             before[j] = motion.sense[j]
         x += step
-        if not pass_event(problem, row, friction, x * h, motion, box, counts, event, False):
+        if not pass_event(problem, row, friction, x * h, motion, memory.box, counts, event, False):
             return UNDETERMINED
         list_changes(row, motion, before, x, kept)
     return TOO_MANY_EVENTS
@@ -150,32 +170,35 @@ def _put_pieces(row, pieces, part, parts):
 
 
 @kernel
-def _set_length(problem, row, h, motion, tables):
+def _set_length(problem, memory, h):
     """Change the length of intervals, with the velocities that are measured in it."""
+    row, motion = memory.row, memory.motion
     before = row.numbers[H]
     if h != before:
         set_interval(problem, 0, row, h)
         for m in range(problem.squares.size):
             motion.state[P, m] *= h / before
         factor_held(problem, row, motion)
-        forget(tables)
+        forget(memory.tables)
 
 
 @kernel
-def _jump(problem, row, friction, motion, box, kept):
+def _jump(problem, friction, memory, kept):
     """Decide the pattern where the load jumps; False if the contacts do not determine their forces."""
+    motion = memory.motion
     before = motion.scratch[_SENSE]
     for j in range(motion.sense.size):
         before[j] = motion.sense[j]
-    if not _settle(problem, row, friction, motion, box):
+    if not _settle(problem, friction, memory):
         return False
-    list_changes(row, motion, before, 0.0, kept)
+    list_changes(memory.row, motion, before, 0.0, kept)
     return True
 
 
 @kernel
-def _settle(problem, row, friction, motion, box):
+def _settle(problem, friction, memory):
     """Ask the law for all held contacts, at the beginning of an interval."""
+    row, motion, box = memory.row, memory.motion, memory.box
     motion.clock[0] = math.nan
     set_channels(problem, row, 0.0, 0, motion)
     if not settle(problem, row, friction, 0.0, motion, box, -1, -1):
@@ -188,51 +211,88 @@ def _settle(problem, row, friction, motion, box):
 
 
 @kernel
-def _begin(problem, row, friction, motion, box, senses):
-    """Decide the pattern of the state at the start; False if the contacts do not determine their forces.
-
-    senses : (N,) of a motion that goes on, or BY_LAW
-    """
+def _sense_at_start(problem, row, motion, j):
+    """Sense of a contact by its velocity: that of one at rest is rounding error of its terms."""
+    if not has_constraint(problem, j):
+        return 0
     modes, channels = problem.push.shape
-    motion.clock[0] = math.nan
-    set_channels(problem, row, 0.0, 0, motion)
-    for j in range(motion.sense.size):
-        w = slide_velocity(problem, row, motion, j)
-        size = abs(row.numbers[H] * problem.belt[j])
-        for m in range(modes):
-            size += abs(problem.chi[j, m] * motion.state[P, m])
-        for d in range(channels):
-            for k in range(1, PIECE_TERMS):
-                size += abs(problem.base[j, d] * motion.series[modes + d, k])
-        moves = abs(w) > _AT_REST * size and has_constraint(problem, j)
-        motion.sense[j] = int(np.sign(w)) if moves else 0
-        if senses[j] != BY_LAW:
-            motion.sense[j] = senses[j]
-    if not prepare(problem, row, friction, motion):
-        return False
-    return senses[0] != BY_LAW or _settle(problem, row, friction, motion, box)
+    w = slide_velocity(problem, row, motion, j)
+    size = abs(row.numbers[H] * problem.belt[j])
+    for m in range(modes):
+        size += abs(problem.chi[j, m] * motion.state[P, m])
+    for d in range(channels):
+        for k in range(1, PIECE_TERMS):
+            size += abs(problem.base[j, d] * motion.series[modes + d, k])
+    return int(np.sign(w)) if abs(w) > _AT_REST * size else 0
 
 
 @kernel
-def _follow_interval(problem, row, friction, motion, box, counts, kept, tables, pieces, step, jump, keeps):
-    """Follow the motion through an interval of the length `step`; see `follow_record`."""
-    parts = max(1, int(math.ceil(problem.rates[0] * step / TURN)))
-    _set_length(problem, row, step / parts, motion, tables)
+def _begin(problem, friction, memory, course, start, senses):
+    """Set the state and the pattern at the start; False if the contacts do not determine their forces.
+
+    Parameters
+    ----------
+    problem, friction, memory, course, start, senses : see `follow_record`
+    """
+    row, motion = memory.row, memory.motion
+    row.intervals[0] = 1
+    row.loads[:] = 0.0
+    parts = _parts_of(problem, course.steps[0])
+    set_interval(problem, 0, row, course.steps[0] / parts)
+    _put_pieces(row, course.pieces[0], 0, parts)
+    for m in range(problem.squares.size):
+        motion.state[Q, m] = start[Q, m]
+        motion.state[P, m] = start[P, m] * row.numbers[H]
+    motion.clock[0] = math.nan
+    set_channels(problem, row, 0.0, 0, motion)
+    for j in range(motion.sense.size):
+        motion.state[F, j] = start[F, j]
+        by_law = senses[j] == BY_LAW
+        motion.sense[j] = _sense_at_start(problem, row, motion, j) if by_law else senses[j]
+    if not prepare(problem, row, friction, motion):
+        return False
+    return senses[0] != BY_LAW or _settle(problem, friction, memory)
+
+
+@kernel
+def _parts_of(problem, step):
+    """Equal parts of an interval in which series are exact to rounding."""
+    return max(1, int(math.ceil(problem.rates[0] * step / TURN)))
+
+
+@kernel
+def _follow_interval(problem, friction, memory, course, kept, k, jump, listed):
+    """Follow the motion through interval k.
+
+    Parameters
+    ----------
+    problem, friction, memory, course, kept : see `follow_record`
+    k : interval
+    jump : whether the load jumps where it begins
+    listed : whether the states at events are kept
+
+    Returns
+    -------
+    int : RESOLVED, TOO_MANY_EVENTS or UNDETERMINED
+    """
+    step = course.steps[k]
+    parts = _parts_of(problem, step)
+    _set_length(problem, memory, step / parts)
+    tables = memory.tables
     begin = kept.clock[0]
     for part in range(parts):
         kept.clock[0] = begin + step * (part / parts)
-        _put_pieces(row, pieces, part, parts)
-        if jump and part == 0 and not _jump(problem, row, friction, motion, box, kept):
+        _put_pieces(memory.row, course.pieces[k], part, parts)
+        jumped = jump and part == 0
+        if jumped and not _jump(problem, friction, memory, kept):
             return UNDETERMINED
-        sample, jumped = part == parts - 1, jump and part == 0
-        if jumped or not (
-            tables.known.size > 0 and pass_by_tables(problem, row, friction, motion, counts, kept, tables)
-        ):
-            code = _cross(problem, row, friction, motion, box, counts, kept, sample, jumped, keeps)
-            if code != RESOLVED:
-                return code
-    if keeps[1]:
-        store_state(problem, row, motion, 1.0, kept)
+        by_tables = not jumped and tables.known.size > 0
+        row, motion, counts = memory.row, memory.motion, memory.counts
+        if by_tables and pass_by_tables(problem, row, friction, motion, counts, kept, tables):
+            continue
+        code = _cross(problem, friction, memory, kept, part == parts - 1, jumped, listed)
+        if code != RESOLVED:
+            return code
     return RESOLVED
 
 
@@ -251,80 +311,72 @@ def _creeps(problem, row, motion):
     return speed <= _CREEP * size
 
 
+@kernel
+def _follow(problem, friction, memory, course, kept, bed, limits):
+    """Follow the motion from its start.
+
+    Parameters
+    ----------
+    problem, friction, memory, course, kept, bed, limits : see `follow_record`
+
+    Returns
+    -------
+    (status, done, asleep) : see `follow_record`
+    """
+    last, to_rest = course.steps.size - 1, limits[TO_REST] != 0
+    row, motion = memory.row, memory.motion
+    done, asleep = 0, -1
+    while True:
+        k = min(done, last)
+        if k == last and asleep < 0 and is_asleep(row, friction, motion, bed):
+            asleep = done
+        if asleep >= 0 and to_rest:
+            return RESOLVED, done, asleep
+        if done >= last + limits[AFTER]:
+            return (RINGING if to_rest else RESOLVED), done, asleep
+        kept.clock[0] = course.times[k] + (done - k) * course.steps[k]
+        jump = course.jumps[k] and done == k and done > 0
+        code = _follow_interval(problem, friction, memory, course, kept, k, jump, limits[LISTED] != 0)
+        if code != RESOLVED:
+            return code, done, asleep
+        done += 1
+        if limits[EVERY] > 0 and (done % limits[EVERY] == 0 or done == last):
+            store_state(problem, row, motion, 1.0, kept)
+        if k == last and to_rest and _creeps(problem, row, motion):
+            return CREEPING, done, asleep
+
+
 @entry
-def follow_record(problem, memory, friction, start, senses, pieces, steps, times, jumps, kept, bed, limits):
+def follow_record(problem, friction, memory, course, start, senses, kept, bed, limits):
     """Follow the motion under a record and after it.
 
     Parameters
     ----------
     problem : Problem with r = [1.0] and no harmonics; its first rate bounds that of free motion
-    memory : Memory
     friction : Friction
-    start, senses : (3, ...) modes, their velocities q', forces of springs; see `_begin`
-    pieces : (K, D, PIECE_TERMS) polynomials of the channels over the interval; the last one is that after the
-        record
-    steps, times : (K,) lengths of the intervals, and when they begin
-    jumps : (K,) bool: whether a channel jumps where the interval begins
+    memory : Memory; its counters and the state are those at the end
+    course : Course
+    start : (3, ...) modes, their velocities q', forces of springs
+    senses : (N,) of a motion that goes on; else BY_LAW
     kept : Kept
     bed : Bed
-    limits : (4,) int: states are kept every so many samples (0: none); intervals after the record at most;
-        whether to end when asleep; whether states at events are kept
+    limits : (4,) int, see EVERY
 
     Returns
     -------
-    (status, counts, state, sense, done, asleep) : see RESOLVED; counters (COUNT_ROWS, N), modes and their
-        velocities (2, m), and senses (N,) at the end; intervals followed; after how many of them no contact
-        moves again, -1 if this is not proved
+    (status, done, asleep) : see RESOLVED; intervals followed; after how many of them no contact moves again,
+        -1 if this is not proved
     """
-    contacts = problem.spring.size
-    problem, friction, kept, bed = packed(problem), packed(friction), packed(kept), packed(bed)
-    row, motion, tables = packed(memory.row), packed(memory.motion), packed(memory.tables)
-    box, counts = np.zeros((BOX_ROWS, contacts)), np.zeros((COUNT_ROWS, contacts))
-    row.intervals[0] = 1
-    row.loads[:] = 0.0
+    problem, friction, memory = packed(problem), packed(friction), packed(memory)
+    course, kept, bed = packed(course), packed(kept), packed(bed)
+    row, motion = memory.row, memory.motion
     clear_record(kept.record)
-    parts = max(1, int(math.ceil(problem.rates[0] * steps[0] / TURN)))
-    set_interval(problem, 0, row, steps[0] / parts)
-    for m in range(problem.squares.size):
-        motion.state[Q, m] = start[Q, m]
-        motion.state[P, m] = start[P, m] * row.numbers[H]
-    for j in range(contacts):
-        motion.state[F, j] = start[F, j]
-    _put_pieces(row, pieces[0], 0, parts)
-    status = RESOLVED if _begin(problem, row, friction, motion, box, senses) else UNDETERMINED
-    last = steps.size - 1
-    if status == RESOLVED and limits[0] > 0:
+    if not _begin(problem, friction, memory, course, start, senses):
+        return UNDETERMINED, 0, -1
+    if limits[EVERY] > 0:
         expand(problem, row, friction, 0.0, 0, motion, True)
-        keep_state(problem, row, motion, 0.0, 0.0, kept)
-    done, asleep = 0, -1
-    if limits[2] != 0:
-        status = RINGING if status == RESOLVED else status
-    while status == RESOLVED or status == RINGING:
-        k = min(done, last)
-        if k == last and asleep < 0 and is_asleep(row, friction, motion, bed):
-            asleep = done
-        if asleep >= 0 and limits[2] != 0:
-            status = RESOLVED
-            break
-        if done >= last + limits[1]:
-            break
-        kept.clock[0] = times[k] + (done - k) * steps[k]
-        jump = jumps[k] and done == k and done > 0
-        keeps = (limits[3] != 0, limits[0] > 0 and ((done + 1) % max(1, limits[0]) == 0 or done + 1 == last))
-        code = _follow_interval(
-            problem, row, friction, motion, box, counts, kept, tables, pieces[k], steps[k], jump, keeps
-        )
-        if code != RESOLVED:
-            status = code
-            break
-        done += 1
-        if k == last and limits[2] != 0 and _creeps(problem, row, motion):
-            status = CREEPING
-            break
-    state = np.zeros((2, problem.squares.size))
+        keep_present(problem, row, motion, 0.0, 0.0, kept)
+    status, done, asleep = _follow(problem, friction, memory, course, kept, bed, limits)
     for m in range(problem.squares.size):
-        state[Q, m] = motion.state[Q, m]
-        state[P, m] = motion.state[P, m] / row.numbers[H]
-    if asleep < 0 and done >= last and is_asleep(row, friction, motion, bed):
-        asleep = done
-    return status, counts, state, motion.sense, done, asleep
+        motion.state[P, m] /= row.numbers[H]
+    return status, done, asleep

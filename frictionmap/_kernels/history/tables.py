@@ -65,7 +65,7 @@ class Tables(NamedTuple):
 
 @kernel
 def _sizes(problem, watched):
-    """(units, rows of parts) of a system that watches so many quantities."""
+    """(units, rows of parts) of a system that watches this number of quantities."""
     contacts, channels = problem.spring.size, problem.push.shape[1]
     units = state_size(problem) + contacts + channels * PIECE_TERMS
     return units, state_size(problem) + 4 * contacts + watched + channels * (PIECE_TERMS - 1)
@@ -73,7 +73,7 @@ def _sizes(problem, watched):
 
 @entry
 def make_tables(problem, watched, wanted):
-    """Allocate them, or empty ones; `watched` is the number of quantities whose peaks are kept."""
+    """Allocate them, or empty ones; `watched` is the number of quantities with kept peaks."""
     contacts, modes = problem.chi.shape
     units, rows = _sizes(problem, watched)
     width, bounds = padded(rows), padded(contacts + watched)
@@ -140,7 +140,7 @@ def _begin_with(problem, row, motion, unit, q):
 
 
 @kernel
-def _fill_unit(problem, row, motion, kept, tables, q, at):
+def _fill_unit(problem, row, motion, kept, tables, at):
     """Fill the parts of a unit, whose series are there, in row `at`."""
     channels = problem.push.shape[1]
     size, contacts = state_size(problem), problem.spring.size
@@ -171,11 +171,11 @@ def _fill_unit(problem, row, motion, kept, tables, q, at):
                 sum_ += motion.scratch[VALUE, k] / (i + k + 1.0)
             parts[at, place + i] = sum_
         place += PIECE_TERMS - 1
-    _fill_change(problem, motion, parts, q, at)
+    _fill_change(problem, motion, parts, at)
 
 
 @kernel
-def _fill_change(problem, motion, parts, q, at):
+def _fill_change(problem, motion, parts, at):
     """Fill the change of the state: sums of the terms of the series after those that the state holds."""
     modes = problem.push.shape[0]
     for m in range(modes):
@@ -204,7 +204,7 @@ def _fill_set(problem, row, motion, kept, tables, slot):
     for q in range(count):
         _begin_with(problem, row, motion, unit, q)
         expand(problem, row, unit, 0.0, -1, motion, True)
-        _fill_unit(problem, row, motion, kept, tables, q, slot * count + q)
+        _fill_unit(problem, row, motion, kept, tables, slot * count + q)
     for part in range(3):
         for i in range(motion.state.shape[1]):
             motion.state[part, i] = tables.state[part, i]
@@ -315,7 +315,12 @@ def pass_by_tables(problem, row, friction, motion, counts, kept, tables):
 
 @inner_kernel
 def _take(problem, row, friction, motion, counts, kept, tables):
-    """Move the state, and add what is summed over the motion."""
+    """Move the state, and add what is summed over the motion.
+
+    Parameters
+    ----------
+    problem, row, friction, motion, counts, kept, tables : see `pass_by_tables`
+    """
     contacts, modes = problem.chi.shape
     channels = problem.push.shape[1]
     size, sums, units = state_size(problem), tables.sums, tables.units

@@ -1,0 +1,268 @@
+"""Motions in time under records, against independent programs, closed forms and what is proved about them."""
+
+import math
+
+import numpy as np
+import pytest
+
+import frictionmap as fm
+
+_KINDS = {"wall": "fixed-wall", "base": "joined-base-wall", "masses": "between-masses"}
+_QUANTITIES = {"force": "force", "base acceleration": "acceleration", "base displacement": "displacement"}
+_HOW = {"zoh": "hold", "natural": "cubic", "clamped": "cubic", "linear": "linear"}
+
+
+def _lcg(seed, n, ar, envelope, **_):
+    """Samples with the same bits in any double arithmetic: history.md 7, 1."""
+    state, mask = seed, (1 << 64) - 1
+
+    def uniform():
+        nonlocal state
+        state = (6364136223846793005 * state + 1442695040888963407) & mask
+        return (state >> 11) * 2.0**-53
+
+    values, one, two = np.zeros(n), 0.0, 0.0
+    for k in range(n):
+        e = ((uniform() + uniform()) + uniform()) + uniform() - 2.0
+        one, two = (ar[0] * one + ar[1] * two) + e, one
+        rise, fall = envelope
+        values[k] = one * (k / rise if k < rise else (n - 1 - k) / (n - 1 - fall) if k > fall else 1.0)
+    return values / np.abs(values).max()
+
+
+def _record(given, **options):
+    kind, how = given["kind"], _HOW[given.get("interpolation", "linear")]
+    options = {"interpolation": how, "scale": given.get("scale", 1.0), **options}
+    if kind == "polyline":
+        time, values = np.array(given["points"], dtype=float).T
+        return fm.Record(values, time=time, **options)
+    if kind == "lcg":
+        values = _lcg(**given)
+    elif kind == "samples":
+        values = given["values"]
+    else:
+        t = np.arange(given["n"]) * given["dt"]
+        rate = (given["f1"] - given["f0"]) / (2.0 * t[-1])
+        values = np.sin(2.0 * np.pi * (given["f0"] * t + rate * t * t))
+    return fm.Record(values, given["dt"], **options)
+
+
+def _system(row):
+    base = row["load"]["kind"] != "force"
+    contacts = []
+    for j, (kind, *masses) in enumerate(row["contacts"]):
+        own = {"kind": _KINDS[kind], "masses": masses, "ratio": row["beta"][j]}
+        if row.get("kt") and row["kt"][j]:
+            own["stiffness"] = row["kt"][j]
+        else:
+            own["mu"] = row["mu"][j]
+        if "belt" in row:
+            own["wall_velocity"] = row["belt"][j]
+        if "normal" in row:
+            factor = row["normal"]["factor"]
+            own["normal_record"] = _record(
+                row["normal"]["record"] | {"scale": factor[j] if isinstance(factor, list) else factor},
+                quantity="force",
+            )
+        contacts.append(fm.Contact(**own))
+    moved = {"excitation": "base", "damping_reference": "base"} if base else {}
+    matrices = {name: np.array(row[name]) for name in "MKC"}
+    return fm.System(matrices=matrices, frequency_scale=1.0, contacts=contacts, **moved)
+
+
+#: Variable of a dataset, and its name in the table of the reference.
+_COMPARED = {
+    "x_max": "x_max", "x_min": "x_min", "z_max": "z_max", "z_min": "z_min", "friction_max": "force_max",
+    "friction_min": "force_min", "acceleration_max": "acceleration_max",
+    "acceleration_min": "acceleration_min", "base_force_max": "base_force_max",
+    "base_force_min": "base_force_min", "sliding_distance": "sliding_distance",
+    "work_friction": "work_friction",
+}  # fmt: skip
+
+
+def _check(row):
+    system, load = _system(row), row["load"]
+    vector = {"vector": load["vector"]} if load["kind"] == "force" else {}
+    record = _record(row["record"], quantity=_QUANTITIES[load["kind"]], **vector)
+    start = {key: row[f"{key}0"] for key in "xv" if f"{key}0" in row} or "rest"
+    ds = fm.history(system, record, beta=1.0, start=start, after=row["ring"])
+    wanted = row["result"]
+    for name, theirs in _COMPARED.items():
+        pair = wanted[theirs]
+        ends = [wanted[theirs.replace(*swap)] for swap in (("max", "min"), ("min", "max"))]
+        size = max(np.abs(values).max() for values in (pair, *ends))
+        assert ds[name].values.ravel() == pytest.approx(pair, rel=0.0, abs=1e-10 * max(size, 1e-9)), name
+    works = [abs(wanted[name]) for name in ("work_load", "work_walls", "work_damping")]
+    for name in ("work_load", "work_walls", "work_damping"):
+        assert ds[name].item() == pytest.approx(wanted[name], rel=0.0, abs=1e-10 * max(works)), name
+    elastic = np.array(row.get("kt", [0.0] * len(row["contacts"]))) > 0.0
+    ends = np.where(elastic, ds.get("slips", 0.0 * ds.turns).values, ds.get("stops", 0.0 * ds.turns).values)
+    assert ends.ravel().tolist() == wanted["stops"]
+    assert ds.turns.values.ravel().tolist() == wanted["turns"]
+    assert ds.events.item() == wanted["events"]
+    stuck = ds.stuck_fraction.values.ravel() * ds.end_time.item()
+    assert stuck == pytest.approx(wanted["stuck_time"], rel=1e-10)
+    if wanted["events"]:
+        assert ds.first_motion.item() == pytest.approx(wanted["first_event"], rel=1e-11)
+        assert ds.event_time[..., -1].item() == pytest.approx(wanted["last_event"], rel=1e-11)
+    if wanted["asleep"]:
+        size = np.abs([wanted["x_max"], wanted["x_min"]]).max()
+        assert ds.residual.values.ravel() == pytest.approx(wanted["x_rest"], rel=0.0, abs=1e-10 * size)
+
+
+def test_motions_of_independent_programs(reference_table):
+    rows = reference_table("history.json")["rows"]
+    assert len(rows) > 50
+    for row in rows:
+        _check(row)
+
+
+def test_a_limit_that_a_sample_touches_is_no_release(reference_table):
+    for row in reference_table("history.json")["ties"]:
+        row = row | {"contacts": [["base", 1]]}
+        ds = fm.history(_system(row), _record(row["record"]), beta=1.0)
+        assert ds.events.item() == 0
+
+
+_ROW = {
+    "M": [[1.0]], "K": [[1.0]], "C": [[0.1]], "contacts": [["base", 1]], "beta": [0.26], "mu": [1.0],
+    "load": {"kind": "base acceleration"},
+    "record": {
+        "kind": "lcg", "seed": 470941797, "n": 330, "dt": 0.11, "ar": [1.31, -0.76], "envelope": [41, 165],
+    },
+}  # fmt: skip
+
+
+def test_one_mass():
+    ds = fm.history(_system(_ROW), _record(_ROW["record"]), beta=1.0, after=40.0)
+    # two programs that share no code, history.md: Taylor series in long double, matrix exponentials
+    assert ds.x_max.item() == pytest.approx(0.076678602069532, rel=1e-12)
+    assert ds.acceleration_max.item() == pytest.approx(0.3644953442039622, rel=1e-12)
+    assert ds.sliding_distance.item() == pytest.approx(0.8806398485310015, rel=1e-12)
+    assert ds.residual.item() == pytest.approx(-0.04236166338634339, rel=1e-11)
+    assert (ds.stops.item(), ds.turns.item(), ds.events.item()) == (28, 11, 67)
+
+
+def _free(zeta, x0, beta):
+    record = fm.Record([0.0, 0.0], 0.5, quantity="force")
+    return fm.history(fm.System(damping_ratios=zeta), record, beta=beta, start={"x": [x0]})
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.05, 0.4])
+def test_free_decay(zeta):
+    x0, b = 7.3, 0.5
+    ds = _free(zeta, x0, b)
+    s, x, k = math.sqrt(1.0 - zeta * zeta), x0, 0
+    while x > b:  # history.md 7, 4: a half cycle is a damped one about -+b
+        x, k = (x - b) * math.exp(-math.pi * zeta / s) - b, k + 1
+    assert ds.residual.item() == pytest.approx((-1) ** k * x, rel=1e-11)
+    assert ds.event_time[..., -1].item() == pytest.approx(k * math.pi / s, rel=1e-12)
+    assert ds.turns.item() == k - 1
+
+
+def test_an_overdamped_slide_creeps_to_its_limit():
+    ds = _free(1.5, 5.0, 0.2)
+    assert ds.status.item() == 2  # creeping
+    assert ds.residual.item() == pytest.approx(0.2, rel=1e-12)
+
+
+_FRAME = fm.System(
+    mass_ratios=[1.0, 1.2, 0.8], stiffness_ratios=[1.0, 0.9, 0.7], damping_ratios=0.03, excitation="base",
+    damping_reference="base",
+    contacts=[fm.Contact("joined-base-wall", 1), fm.Contact("between-masses", [2, 3], ratio=0.4)],
+)  # fmt: skip
+_QUAKE = fm.Record(_lcg(11, 500, [1.5, -0.7], [50, 200]), 0.1)
+
+
+def test_a_long_sine_leads_to_the_steady_state():
+    r, beta = 0.8, 0.35
+    system = fm.System(damping_ratios=0.1)
+    steady = fm.response(system, r, beta)
+    t = np.arange(60 * 256 + 1) * (2.0 * np.pi / r / 256)
+    sine = fm.Record(np.cos(r * t), t[1], quantity="force", interpolation="cubic")
+    ds = fm.history(system, sine, beta=beta, after=0)
+    last = ds.sel(time=slice(t[-257] - 1e-9, None))
+    # the spline of 256 samples a cycle is off by its own error, 256^-4
+    assert float(abs(last.x).max()) == pytest.approx(steady.amplitude.item(), rel=1e-8)
+    kinds = ds.event_kind.values.ravel()[ds.event_time.values.ravel() > t[-257]]
+    assert (kinds == 0).sum() == pytest.approx(steady.stops_per_cycle.item(), abs=0)
+
+
+def test_scaled_records_and_friction_scale_the_motion():
+    one = fm.history(_FRAME, _QUAKE, beta=0.2, samples="none")
+    two = fm.history(_FRAME, _QUAKE, beta=0.5, scale=2.5, samples="none")
+    assert two.amplitude.values == pytest.approx(2.5 * one.amplitude.values, rel=1e-12)
+    assert two.stops.values.tolist() == one.stops.values.tolist()
+    turned = fm.history(_FRAME, _QUAKE, beta=0.2, scale=-1.0, samples="none")
+    assert turned.x_max.values == pytest.approx(-one.x_min.values, rel=1e-12)
+
+
+def test_a_record_cut_in_two_gives_the_same_motion():
+    values, cut = _QUAKE.values, 233
+    whole = fm.history(_FRAME, _QUAKE, beta=0.2, after=0)
+    first = fm.history(_FRAME, fm.Record(values[: cut + 1], 0.1), beta=0.2, after=0)
+    second = fm.history(_FRAME, fm.Record(values[cut:], 0.1), beta=0.2, after=0, start=first)
+    at_end = whole.x.values[..., -1]
+    assert second.x.values[..., -1] == pytest.approx(at_end, rel=1e-11)
+    assert first.events.item() + second.events.item() == whole.events.item()
+
+
+def test_the_same_bits_for_any_threads():
+    options = {"beta": [0.05, 0.2, 0.4], "mu": [1.0, 1.3], "scale": [0.5, 1.0], "samples": 7}
+    one = fm.history(_FRAME, [_QUAKE, _QUAKE], threads=1, **options)
+    assert fm.history(_FRAME, [_QUAKE, _QUAKE], threads=3, **options).identical(one)
+
+
+def test_from_beta_hold_on_nothing_moves():
+    hold = fm.history(_FRAME, _QUAKE, beta=1.0, samples="none").beta_hold.item()
+    above = fm.history(_FRAME, _QUAKE, beta=hold * (1.0 + 1e-9), samples="none")
+    below = fm.history(_FRAME, _QUAKE, beta=hold * (1.0 - 1e-9), samples="none")
+    assert above.events.item() == 0
+    assert below.events.item() > 0
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_two_motions_never_move_apart(seed):
+    """history.md 2: for mu = 1 the energy of their difference never grows, whatever the record."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 4))
+    kappa = np.concatenate(([1.0], rng.uniform(0.4, 2.0, n - 1)))
+    contacts = [fm.Contact("fixed-wall", int(rng.integers(1, n + 1)))]
+    if n > 1:
+        contacts.append(fm.Contact("between-masses", [1, n], ratio=0.5, stiffness=3.0 if seed % 2 else None))
+    system = fm.System(mass_ratios=np.ones(n), stiffness_ratios=kappa, damping_ratios=0.02, contacts=contacts)
+    record = fm.Record(rng.normal(size=300), 0.2, quantity="force")
+    starts = [{"x": rng.normal(size=n), "v": rng.normal(size=n)} for _ in range(2)]
+    one, two = (fm.history(system, record, beta=0.4, start=start, after=0.0) for start in starts)
+    common = np.intersect1d(one.time.values, two.time.values)[::5]
+    # of times twice there, both sides of an event, one: the state is continuous
+    one, two = (ds.drop_duplicates("time").sel(time=common) for ds in (one, two))
+    dx = (one.x - two.x).values.reshape(n, -1)
+    dv = (one.v - two.v).values.reshape(n, -1)
+    df = (one.friction - two.friction).values.reshape(len(contacts), -1)
+    stretch = np.diff(dx, axis=0, prepend=0.0)
+    energy = 0.5 * (dv**2).sum(axis=0) + 0.5 * (kappa[:, np.newaxis] * stretch**2).sum(axis=0)
+    for j, contact in enumerate(contacts):
+        if contact.stiffness:
+            energy = energy + 0.5 * df[j] ** 2 / contact.stiffness
+    assert (np.diff(energy) <= 1e-12 * energy[0]).all()
+
+
+def test_a_base_that_moves_is_the_force_in_absolute_coordinates():
+    """Relative coordinates under -M iota a, and absolute ones under K iota u + C iota u'."""
+    t = np.arange(200) * 0.1
+    u = np.sin(0.9 * t) * (t / t[-1]) ** 2 * (1.0 - t / t[-1]) ** 2
+    system = fm.System(damping_ratios=0.04, contacts=[fm.Contact("fixed-wall", 1)])
+    base = fm.history(system, fm.Record(u, 0.1, quantity="displacement"), beta=0.01, after=0)
+    from scipy.interpolate import CubicSpline
+
+    fine = np.arange(199 * 40 + 1) * 0.0025
+    spline = CubicSpline(t, u, bc_type="clamped")
+    force = spline(fine) + 0.08 * spline(fine, 1)
+    absolute = fm.history(
+        system, fm.Record(force, 0.0025, quantity="force", interpolation="cubic"), beta=0.01, after=0
+    )
+    # z is the absolute place of the mass in front of a wall at rest
+    assert base.z_max.item() == pytest.approx(absolute.z_max.item(), rel=1e-9)
+    assert base.work_friction.item() == pytest.approx(absolute.work_friction.item(), rel=1e-8)
+    assert base.stops.item() == absolute.stops.item()

@@ -23,10 +23,10 @@ theory         closed forms over frequency: beta_lim, beta_stick, continuous mot
 single         one rigid contact under one harmonic load: cells, maps, curves, motions
 general        several contacts, springs in contacts, belts, periodic loads: boundaries, maps, motions
 solvers        the engines behind one interface, and which of them answers for a system
-motions        motions in time under records: earthquakes, pulses, run-ups, random loads
 steady         steady states: cells, maps, response curves, time histories; time and memory of a map
 stop_counts    borders between numbers of stops per cycle, as exact curves
 files          configurations; output files, reading, writing; summaries in words
+motions        motions in time under records: earthquakes, pulses, run-ups, random loads
 probabilities  shares of the regimes over many samples of an uncertain structure
 design         which friction to choose: least peak, within a limit, without stops, stuck, margins
 stores         maps written block by block into a zarr store, by this process or by workers

@@ -345,6 +345,27 @@ def _design(options: Options) -> None:
     _report(options, output, f"{design.title}: {design.question}", *describe_design(ds))
 
 
+def _history(options: Options) -> None:
+    """Follow the motions of a configuration under its records."""
+    from .._kernels.compiler.notices import listening
+    from ..files.motions import describe_motions
+    from ..files.places import claimed
+    from ..files.storage import write_netcdf
+    from ..motions.configuration import load_history
+    from .progress import Progress
+
+    _refuse_ending(options)
+    task = load_history(options.config, options.overrides)
+    path = options.output or Path(f"{task.name}-history.nc")
+    with claimed(path, options.overwrite, task.files) as output:
+        what = f"{task.motions:,} motion{'s' * (task.motions != 1)} in time"
+        with Progress(what, options.quiet) as progress, listening(progress.compiling):
+            ds = task.ask(threads=options.threads, progress=progress)
+            ds.attrs |= {"title": task.title, "config": task.text}
+            output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
+    _report(options, output, task.title, *describe_motions(ds))
+
+
 def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None) -> "xr.Dataset":
     """Read the point of a file, or its shares over an axis, selected by the arguments.
 
@@ -543,6 +564,7 @@ _COMMANDS: dict[str, Callable[[Options], None]] = {
     "reduce": _reduce,
     "identify": _identify,
     "design": _design,
+    "history": _history,
     "export": _export,
     "explore": _explore,
     "init": _init,

@@ -123,6 +123,9 @@ def _chain(name: str, meaning: str) -> Key:
     return Key(name, f"instead of {RATIOS[name]}: {meaning}", several(with_unit(kind)), None, example, words)
 
 
+#: Friction of motions in time.
+_FRICTION = either(number(least=0.0), with_unit("force"), with_unit("acceleration"))
+
 #: Keys of [system] for several contacts, springs in contacts, belts and periodic loads.
 GENERAL_KEYS = (
     Key(
@@ -401,6 +404,42 @@ KEYS: dict[str, tuple[Key, ...]] = {
         Key("harmonics", "highest harmonic; 0: none", whole(**RANGES["harmonics"]), _CURVES.harmonics),
     ),
     "design": _design_keys(),
+    "history": (
+        Key(
+            "beta",
+            "friction ratios; with [units] also forces, or accelerations of friction over m_1",
+            either(_FRICTION, several(_FRICTION)),
+            example="[0.2]",
+            words='a number >= 0, or with a unit of force or acceleration, such as "0.05 g"; or a list of them',
+        ),
+        Key(
+            "friction",
+            "another name of beta",
+            either(_FRICTION, several(_FRICTION)),
+            example='["0.05 g"]',
+            words="as beta",
+        ),
+        Key(
+            "mu",
+            "ratios of static to kinetic friction",
+            either(number(least=1.0), several(number(least=1.0))),
+            1.0,
+        ),
+        Key(
+            "start",
+            "the state at the beginning",
+            either(_NAME, table({"x": several(number()), "v": several(number())})),
+            "rest",
+            words='"rest", { x, v } with a number per mass, or the file of a motion',
+        ),
+        Key(
+            "samples",
+            "which samples of histories are kept",
+            either(word("all", "none"), whole(least=1)),
+            "all",
+            words='"all", "none", or every so many samples',
+        ),
+    ),
     "units": (
         _unit("natural_frequency", "frequency at r = 1: sqrt(k_1/m_1)/(2 pi), or frequency_scale/(2 pi)"),
         _unit("load", "friction force at beta = 1: the load amplitude P, or k_1 Y for base excitation"),
@@ -423,6 +462,7 @@ TABLES = {
     "solver": "How steady states are found, and the output variables.",
     "curves": "For `frictionmap curves` only, which takes a short list of beta.",
     "design": "For `frictionmap design` only: which friction to choose.",
+    "history": "For `frictionmap history`: friction, start, and what is kept.",
     "units": "Optional: reference values that convert ratios to Hz and N; [grid] may then use these units.",
     "axes": "Further axes: values of [system] that vary, one per axis, or several together from a CSV file.",
 }

@@ -50,6 +50,8 @@ class Contact(Shown):
     normal_load : mapping or sequence, optional
         Harmonics of the normal load: friction beta nu(tau), nu = 1 + Re sum nu_n e^{i n tau} >= 0.  A mapping
         {n: phasor}, or a list of { n, amplitude, phase_deg }.
+    normal_record : Record, optional
+        For `history` only: friction beta nu(t), nu = 1 + its value >= 0.
 
     Raises
     ------
@@ -106,6 +108,8 @@ class Contact(Shown):
                 f"must be 1 for a contact with stiffness: its spring would jump at break-away; "
                 f"got {self.mu:g}",
             )
+        if self.normal_record is not None:
+            self._check_normal_record()
         if self.normal_load is not None:
             self._set("nu", scalar_harmonics(self.normal_load, "normal_load"))
             self._check_normal_load()
@@ -129,6 +133,19 @@ class Contact(Shown):
                 raise InputError(
                     name, f"must have as many values as stiffness ({len(self.stiffness)}); got {len(given)}"
                 )
+
+    def _check_normal_record(self) -> None:
+        if type(self.normal_record).__name__ != "Record":
+            got = checks.one_line(self.normal_record)
+            raise InputError("normal_record", f"must be a frictionmap.Record; got {got}")
+        for name in ("stiffness", "normal_load"):
+            if getattr(self, name) is not None:
+                why = (
+                    "elastic contacts have a constant normal load"
+                    if name == "stiffness"
+                    else "both define it"
+                )
+                raise InputError("cannot use", "normal_record", f"with {name}: {why}; omit one")
 
     def _check_normal_load(self) -> None:
         if self.nu and self.stiffness is not None:

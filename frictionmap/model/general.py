@@ -353,7 +353,8 @@ def _groups(system: Definition) -> tuple[MergedContact, ...]:
             if not same or contact.stiffness is not None or other.first.stiffness is not None:
                 continue
             walls = any(getattr(contact, name) != getattr(other.first, name) for name in WALLS)
-            if walls or contact.nu != other.first.nu:
+            same_load = contact.nu == other.first.nu and contact.normal_record is other.first.normal_record
+            if walls or not same_load:
                 raise InputError(
                     name,
                     f"must have the wall_velocity and the normal_load of {other.name}, with which it "

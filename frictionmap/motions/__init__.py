@@ -11,5 +11,6 @@ structure   a system under channels as arrays for the kernels, and what is watch
 starts      states at the beginning: at rest, given, or where another motion ended
 cells       the motions of a grid of records, scales and friction, on several threads
 dataset     `history`: motions in time as labelled variables
+configuration  the tables [record], [history] and [spectrum] of a configuration
 ==========  ================================================================================
 """

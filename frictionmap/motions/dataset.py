@@ -10,14 +10,19 @@ from numpy.typing import ArrayLike
 
 from .. import checks
 from ..datasets.labels import attributes
-from ..datasets.motion_labels import MOTIONS, OF_CONTACTS
+from ..datasets.labels import REFERENCES
+from ..datasets.motion_labels import IN_SI, MOTIONS, OF_CONTACTS, TIMES, motion_labels, si_name
+from ..datasets.provenance import excitation_of, now
 from ..errors import InputError
 from ..general.dataset import refuse_static
 from ..jobs import Progress, Watch
 from ..model.system import System
+from ..units.scales import Scales, Units
+from ..version import __version__
 from .cells import Asked, Found, Motions, run_all
-from .channels import Scale, checked_record, drive_of
+from .channels import checked_record, drive_of
 from .record import Record
+from .scaling import friction_ratios, motion_scales, scale_of
 from .starts import start_of
 from .structure import Structure, structure_of
 
@@ -101,6 +106,7 @@ def history(
     mu: ArrayLike = 1.0,
     *,
     scale: ArrayLike = 1.0,
+    units: Units | None = None,
     start: str | Mapping[str, Any] | xr.Dataset = "rest",
     after: str | float = "rest",
     samples: str | int = "all",
@@ -125,7 +131,11 @@ def history(
         Ratios of static to kinetic friction [-], >= 1, increasing.
     scale : array_like
         Factors of the records, increasing.
-    start : "rest", mapping or Dataset
+    units : Units, optional
+        Reference values that convert times to seconds and friction to newtons.  A record with a unit needs
+        the natural frequency.  Where nothing states P, P/m_1 is 1 m/s^2.  `beta` may then be forces, or
+        accelerations of friction over m_1: "0.05 g".
+    start : "rest", mapping, Dataset or path
         ``{"x": [...], "v": [...]}``: displacements and velocities of the masses; or the last state of a
         `history`, or the state at tau = 0 of a `response`.
     after : "rest" or float
@@ -160,16 +170,55 @@ def history(
     1
     """
     checks.instance(system, "system", System)
+    scales = motion_scales(units, system)
+    beta = friction_ratios(1.0 if beta is None else beta, "beta", scales)
     grid = Grid(
-        _records(record), _axis(scale, "scale"), _axis(mu, "mu", least=1.0),
-        _axis(1.0 if beta is None else beta, "beta", least=0.0),
-    )  # fmt: skip
+        _records(record), _axis(scale, "scale"), _axis(mu, "mu", least=1.0), _axis(beta, "beta", least=0.0)
+    )
     structure = structure_of(system)
     refuse_static(structure.system.contact_system, grid.mu)
     asked = Asked(start_of(structure, start), _after(after), _every(samples, grid))
     single = int(np.prod(grid.shape)) == 1
-    found = _follow(structure, grid, asked, single, threads, progress, watch)
+    found = _follow(structure, grid, scales, asked, single, threads, progress, watch)
     ds = _labelled(structure, grid, asked, found)
+    ds.attrs = {
+        "Conventions": "CF-1.11", "title": "Motion in time" if single else "Motions in time",
+        "source": f"frictionmap {__version__}", "references": REFERENCES, "system": system.describe(),
+        "excitation": excitation_of(system), "history": f"{now()} frictionmap.history",
+    }  # fmt: skip
+    return in_si(ds, scales)
+
+
+def in_si(ds: xr.Dataset, scales: Scales) -> xr.Dataset:
+    """Times in seconds, and lengths, velocities, accelerations, forces and works in SI units beside ratios."""
+    frequency, force, length = (scales.of(kind) for kind in ("frequency", "force", "length"))
+    ones: dict[str, float] = {}
+    if length is not None:
+        ones["length"] = length
+    if force is not None:
+        ones["force"] = force
+    if force is not None and length is not None:
+        ones["work"] = force * length
+    if frequency is not None:
+        omega = 2.0 * np.pi * frequency
+        if length is not None:
+            ones["velocity"], ones["acceleration"] = omega * length, omega * omega * length
+        ds = _in_seconds(ds, omega)
+    added = {}
+    for measure, one in ones.items():
+        for name in IN_SI[measure]:
+            if name in ds.variables:
+                label = motion_labels()[si_name(name, measure)]
+                added[si_name(name, measure)] = (ds[name].dims, ds[name].values * one, attributes(label))
+    return ds.assign(added)
+
+
+def _in_seconds(ds: xr.Dataset, omega: float) -> xr.Dataset:
+    for name in TIMES:
+        if name in ds.variables:
+            meaning = ds[name].attrs["long_name"].split(", over")[0]
+            attrs = ds[name].attrs | {"units": "s", "long_name": meaning}
+            ds = ds.assign({name: (ds[name].dims, ds[name].values / omega, attrs)})
     return ds
 
 
@@ -182,11 +231,13 @@ class Followed(NamedTuple):
 
 
 def _follow(
-    structure: Structure, grid: Grid, asked: Asked, single: bool, threads: int | None,
+    structure: Structure, grid: Grid, scales: Scales, asked: Asked, single: bool, threads: int | None,
     progress: Progress | None, watch: Watch | None,
 ) -> Followed:  # fmt: skip
     general = structure.system.contact_system
-    motions = [Motions(structure, drive_of(structure.system, one, Scale(1.0, 1.0))) for one in grid.records]
+    motions = [
+        Motions(structure, drive_of(structure.system, one, scale_of(one, scales))) for one in grid.records
+    ]
     found = np.empty(grid.shape, dtype=object)
     hold = np.empty((len(motions), general.count))
 

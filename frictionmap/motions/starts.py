@@ -1,6 +1,7 @@
 """States at the beginning of a motion: at rest, given, or where another motion ended."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,6 +9,7 @@ import xarray as xr
 
 from .. import checks
 from ..errors import InputError
+from ..files.opening import open as open_dataset
 from .structure import Structure
 
 #: Sense of a contact that its law decides.
@@ -34,11 +36,14 @@ def start_of(structure: Structure, given: Any) -> Start:
     by_law = np.full(contacts, BY_LAW)
     if isinstance(given, xr.Dataset):
         return _from_motion(structure, given)
+    if isinstance(given, (str, Path)) and given != "rest":
+        return _from_motion(structure, open_dataset(given))
     if isinstance(given, Mapping):
         return _from_mapping(structure, given)
     if given != "rest":
         raise InputError(
-            "start", f'must be "rest", {{ x = [...], v = [...] }} or a motion; got {checks.one_line(given)}'
+            "start",
+            f'must be "rest", {{ x = [...], v = [...] }}, a motion or its file; got {checks.one_line(given)}',
         )
     return Start(np.zeros(m), np.zeros(m), np.zeros(contacts), by_law)
 

@@ -1,5 +1,6 @@
 """The engine of a system."""
 
+from ..errors import InputError
 from ..model.system import System
 from .interface import Engine
 
@@ -18,6 +19,12 @@ def engine_of(system: System) -> Engine:
     On one rigid contact under one harmonic load both would, with the same numbers; its own takes a sixth to a
     twelfth of the time.
     """
+    if any(group.first.normal_record is not None for group in system.contact_system.groups):
+        raise InputError(
+            "cannot use",
+            "normal_record",
+            "under a periodic load: it is for motions in time; use history, or give normal_load",
+        )
     if has_closed_forms(system):
         from .single import SingleEngine
 

@@ -4,6 +4,8 @@
 module      what is in it
 ==========  ================================================================================
 pieces      polynomials over the intervals of a record: interpolation, derivatives, integrals
+baseline    what is taken off the samples of a record
+formats     files of records, one module per format
 record      `Record`: a load or a base motion over time
 channels    what a record drives: loads on the masses, walls, normal loads
 bed         the structure with all contacts held under no load: place of rest, asleep or not

@@ -1,6 +1,10 @@
 """`Record`: a load or a base motion over time."""
 
+import os
+import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,6 +12,10 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from ..model.shown import Shown
+from ..units.table import UNITS, known_unit, units_of
+from .baseline import BASELINES, corrected
+from .formats.files import Given, read_series
+from .formats.series import Series
 from .pieces import INTERPOLATIONS, Pieces, even_step, interpolated
 
 QUANTITIES = ("force", "acceleration", "velocity", "displacement")
@@ -45,6 +53,10 @@ class Record(Shown):
         Factor of the values.
     name : str, optional
         Name in datasets and pictures.
+    source : str
+        What it comes from, such as a file with its checksum and what it says of event and station.
+    note : str
+        What was made of the samples, such as their mean that was taken off.
 
     Raises
     ------
@@ -67,6 +79,7 @@ class Record(Shown):
     scale: float = 1.0
     name: str | None = None
     source: str = field(default="", compare=False)
+    note: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
         checks.choice(self.quantity, "quantity", QUANTITIES)
@@ -97,6 +110,8 @@ class Record(Shown):
             )
         self._set("interpolation", how)
         self._set("scale", checks.number(self.scale, "scale"))
+        if self.unit is not None:
+            self._set("unit", _unit(self.unit, self.quantity))
         self._check_shape()
 
     def _check_shape(self) -> None:
@@ -114,6 +129,68 @@ class Record(Shown):
 
     def _set(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
+
+    @classmethod
+    def read(
+        cls,
+        path: str | os.PathLike,
+        *,
+        quantity: str | None = None,
+        unit: str | None = None,
+        dt: float | None = None,
+        baseline: str | None = None,
+        decimal: str | None = None,
+        columns: Mapping[str, Any] | None = None,
+        **more: Any,
+    ) -> "Record":
+        """Read a record from a file.
+
+        By its ending it is PEER (.AT2, .VT2, .DT2), K-NET or KiK-net (.EW, .NS, .UD, also with a number), ESM
+        or ITACA (.ASC), COSMOS (.V1, .V2), miniSEED or SAC (through the extra `seismic`), or a table: text,
+        .npz, .mat, .json, .uff, .tdms.  A table has a column of its quantity with a unit, such as
+        acceleration_g, velocity_m_s, displacement_mm or force_N, beside time_s; without units `time` and the
+        quantity alone.
+
+        Parameters
+        ----------
+        path : str or path
+            Of the file.
+        quantity, unit : str, optional
+            Where the file does not state them; and the column of several.
+        dt : float, optional
+            Time step [s] of a table without times.
+        baseline : {"none", "mean", "linear"}, optional
+            What is taken off the samples.  Default: the mean of K-NET files, else nothing.  `note` says
+            how much it was.
+        decimal : {".", ","}, optional
+            Decimal sign of a file of text; default: as its numbers show it.
+        columns : dict, optional
+            Columns of a table by `time` and the quantities: a name, or a table with `name`, `unit`, `scale`
+            and `offset`.
+        more
+            Further arguments of `Record`: interpolation, mass, vector, scale, name.
+
+        Raises
+        ------
+        InputError
+            The file cannot be read, is damaged or truncated, or an argument does not fit it.
+        """
+        if not isinstance(path, (str, os.PathLike)):
+            raise InputError(f"path must be the path of a file; got {checks.one_line(path)}")
+        file = Path(path)
+        series = read_series(file, Given(quantity, unit, dt, decimal, columns))
+        if series.values.size < 2:
+            raise InputError(f"cannot read {file}: a record has at least 2 samples; got {series.values.size}")
+        times = series.time
+        if times is None:
+            times = np.arange(series.values.size) * float(series.dt or 0.0)
+        how = series.baseline if baseline is None else checks.choice(baseline, "baseline", BASELINES)
+        values, taken = corrected(series.values, times, how, series.unit)
+        return cls(
+            values, series.dt, series.time, series.quantity, series.unit,
+            **{"name": file.stem, **more, "source": _source(file, series),
+               "note": "; ".join(filter(None, (series.remark, taken)))},
+        )  # fmt: skip
 
     def _repr_html_(self) -> str:
         return f"<pre>{self!r}</pre>"
@@ -134,7 +211,7 @@ class Record(Shown):
     def times(self) -> np.ndarray:
         """Times of the samples, (n,), the first one 0."""
         if self.dt is not None:
-            return np.arange(self.values.size) * self.dt
+            return np.arange(self.values.size) * float(self.dt)
         return self.time - self.time[0]
 
     @property
@@ -154,6 +231,25 @@ class Record(Shown):
             times = np.arange(times.size) * step
         ends = "clamped" if self.quantity == "displacement" else "natural"
         return interpolated(times, steps, self.values * self.scale, str(self.interpolation), ends)
+
+
+def _unit(given: object, quantity: str) -> str:
+    """A unit of the quantity as the table of units writes it."""
+    unit = known_unit(given) if isinstance(given, str) else None
+    if unit is None or UNITS[unit].measures != KINDS[quantity]:
+        valid = units_of(KINDS[quantity])
+        hint = f": it is a unit of {UNITS[unit].measures}" if unit else ""
+        raise InputError(
+            "unit",
+            f"must be one of {', '.join(valid)} for this quantity, {quantity}; got {checks.one_line(given)}{hint}",
+        )
+    return unit
+
+
+def _source(file: Path, series: Series) -> str:
+    """Name and checksum of a file, and what it says."""
+    said = f": {series.header}" if series.header else ""
+    return f"{file.name} (crc32 {zlib.crc32(file.read_bytes()):08x}){said}"
 
 
 def _samples(given: object, name: str, least: int = 2) -> np.ndarray:

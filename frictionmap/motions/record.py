@@ -119,7 +119,7 @@ class Record(Shown):
             for key in ("mass", "vector"):
                 if getattr(self, key) is not None:
                     raise InputError(
-                        "cannot use", key, f"with a base {self.quantity}, which loads all masses; omit it"
+                        "cannot use", key, f"with a base {self.quantity}: it loads all masses; omit it"
                     )
         if self.mass is not None and self.vector is not None:
             raise InputError("cannot use", "vector", "with mass: both say where the force acts; omit one")
@@ -241,7 +241,8 @@ def _unit(given: object, quantity: str) -> str:
         hint = f": it is a unit of {UNITS[unit].measures}" if unit else ""
         raise InputError(
             "unit",
-            f"must be one of {', '.join(valid)} for this quantity, {quantity}; got {checks.one_line(given)}{hint}",
+            f"must be one of {', '.join(valid)} for this quantity, {quantity}; got "
+            f"{checks.one_line(given)}{hint}",
         )
     return unit
 

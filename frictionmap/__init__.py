@@ -26,7 +26,6 @@ solvers        the engines behind one interface, and which of them answers for a
 steady         steady states: cells, maps, response curves, time histories; time and memory of a map
 stop_counts    borders between numbers of stops per cycle, as exact curves
 files          configurations; output files, reading, writing; summaries in words
-motions        motions in time under records: earthquakes, pulses, run-ups, random loads
 probabilities  shares of the regimes over many samples of an uncertain structure
 design         which friction to choose: least peak, within a limit, without stops, stuck, margins
 stores         maps written block by block into a zarr store, by this process or by workers

@@ -1,18 +1,21 @@
 """Motions in time under records: earthquakes, pulses, run-ups, random loads.
 
-==========  ================================================================================
-module      what is in it
-==========  ================================================================================
-pieces      polynomials over the intervals of a record: interpolation, derivatives, integrals
-baseline    what is taken off the samples of a record
-formats     files of records, one module per format
-record      `Record`: a load or a base motion over time
-channels    what a record drives: loads on the masses, walls, normal loads
-bed         the structure with all contacts held under no load: place of rest, asleep or not
-structure   a system under channels as arrays for the kernels, and what is watched of it
-starts      states at the beginning: at rest, given, or where another motion ended
-cells       the motions of a grid of records, scales and friction, on several threads
-dataset     `history`: motions in time as labelled variables
+=============  ================================================================================
+module         what is in it
+=============  ================================================================================
+pieces         polynomials over the intervals of a record: interpolation, derivatives, integrals
+baseline       what is taken off the samples of a record
+formats        files of records, one module per format
+quantities     numbers of records that may have units
+formulas       pulses and sweeps
+record         `Record`: a load or a base motion over time
+channels       what a record drives: loads on the masses, walls, normal loads
+scaling        what makes a record dimensionless; friction as a force or as an acceleration
+bed            the structure with all contacts held under no load: place of rest, asleep or not
+structure      a system under channels as arrays for the kernels, and what is watched of it
+starts         states at the beginning: at rest, given, or where another motion ended
+cells          the motions of a grid of records, scales and friction, on several threads
+dataset        `history`: motions in time as labelled variables
 configuration  the tables [record], [history] and [spectrum] of a configuration
-==========  ================================================================================
+=============  ================================================================================
 """

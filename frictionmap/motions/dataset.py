@@ -9,8 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
-from ..datasets.labels import attributes
-from ..datasets.labels import REFERENCES
+from ..datasets.labels import REFERENCES, attributes
 from ..datasets.motion_labels import IN_SI, MOTIONS, OF_CONTACTS, TIMES, motion_labels, si_name
 from ..datasets.provenance import excitation_of, now
 from ..errors import InputError
@@ -190,7 +189,7 @@ def history(
 
 
 def in_si(ds: xr.Dataset, scales: Scales) -> xr.Dataset:
-    """Times in seconds, and lengths, velocities, accelerations, forces and works in SI units beside ratios."""
+    """Times in seconds; lengths, velocities, accelerations, forces and works in SI units beside ratios."""
     frequency, force, length = (scales.of(kind) for kind in ("frequency", "force", "length"))
     ones: dict[str, float] = {}
     if length is not None:

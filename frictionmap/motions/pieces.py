@@ -64,6 +64,19 @@ def interpolated(times: np.ndarray, steps: np.ndarray, values: np.ndarray, how: 
     return Pieces(times, steps, _filled(list(spline.c[::-1] * scales)))
 
 
+def with_slopes(times: np.ndarray, steps: np.ndarray, values: np.ndarray, slopes: np.ndarray) -> Pieces:
+    """Cubics with the values and the slopes of samples at both ends of each interval.
+
+    A smooth function with these samples is at most h^4/384 times its largest fourth derivative away, h the
+    longest interval.
+    """
+    begin, end = slopes[:-1] * steps, slopes[1:] * steps
+    rise = np.diff(values)
+    return Pieces(
+        times, steps, _filled([values[:-1], begin, 3.0 * rise - 2.0 * begin - end, begin + end - 2.0 * rise])
+    )
+
+
 def derivative(given: Pieces) -> Pieces:
     """Derivative by time."""
     terms = np.zeros_like(given.terms)

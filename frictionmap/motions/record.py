@@ -3,7 +3,7 @@
 import os
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,11 @@ from ..units.table import UNITS, known_unit, units_of
 from .baseline import BASELINES, corrected
 from .formats.files import Given, read_series
 from .formats.series import Series
-from .pieces import INTERPOLATIONS, Pieces, even_step, interpolated
+from .formulas import LAWS, Formula, checked_pulse
+from .formulas import pulse as pulse_samples
+from .formulas import sweep as sweep_samples
+from .pieces import INTERPOLATIONS, Pieces, even_step, interpolated, with_slopes
+from .quantities import angular, frequency_in, number_in, time_in
 
 QUANTITIES = ("force", "acceleration", "velocity", "displacement")
 
@@ -53,6 +57,8 @@ class Record(Shown):
         Factor of the values.
     name : str, optional
         Name in datasets and pictures.
+    slopes : sequence of float, optional
+        Slopes at the samples, of "cubic" records by a formula.
     source : str
         What it comes from, such as a file with its checksum and what it says of event and station.
     note : str
@@ -78,6 +84,7 @@ class Record(Shown):
     vector: Any = None
     scale: float = 1.0
     name: str | None = None
+    slopes: Any = None
     source: str = field(default="", compare=False)
     note: str = field(default="", compare=False)
 
@@ -112,7 +119,25 @@ class Record(Shown):
         self._set("scale", checks.number(self.scale, "scale"))
         if self.unit is not None:
             self._set("unit", _unit(self.unit, self.quantity))
+        self._check_slopes()
         self._check_shape()
+
+    def _check_slopes(self) -> None:
+        if self.slopes is None:
+            return
+        if self.interpolation != "cubic" or self.quantity == "displacement":
+            raise InputError(
+                "cannot use",
+                "slopes",
+                f'with {self.quantity} and "{self.interpolation}": they belong to "cubic" forces, '
+                "accelerations and velocities; omit them",
+            )
+        slopes = _samples(self.slopes, "slopes")
+        if slopes.size != self.values.size:
+            raise InputError(
+                "slopes", f"must have as many values as the record ({self.values.size}); got {slopes.size}"
+            )
+        self._set("slopes", slopes)
 
     def _check_shape(self) -> None:
         if self.quantity != "force":
@@ -192,6 +217,122 @@ class Record(Shown):
                "note": "; ".join(filter(None, (series.remark, taken)))},
         )  # fmt: skip
 
+    @classmethod
+    def pulse(
+        cls,
+        kind: str,
+        amplitude: float | str,
+        duration: float | str,
+        *,
+        rise: float = 0.5,
+        quantity: str = "acceleration",
+        unit: str | None = None,
+        **more: Any,
+    ) -> "Record":
+        """A single pulse, exact to 1e-9 of its amplitude.
+
+        Parameters
+        ----------
+        kind : {"rectangle", "triangle", "half-sine", "ricker"}
+            Shape.  The spectrum of a Ricker pulse (1 - 2 a^2) exp(-a^2) has its peak at 13/(pi duration).
+        amplitude : float or str
+            Largest value, in `unit` or with a unit, such as "0.4 g"; its sign is that of the pulse.
+        duration : float or str
+            Time from the beginning to the end, > 0: in seconds, of a record without a unit in 1/omega_1.
+        rise : float
+            Share of the duration in which a triangle rises, 0 to 1; at 0 and 1 it jumps.
+        quantity, unit
+            As of `Record`; no displacement.
+        more
+            Further arguments of `Record`: mass, vector, scale, name.
+
+        Raises
+        ------
+        InputError
+            A value is out of range.
+        """
+        _checked(quantity, unit)
+        kind = checked_pulse(kind, quantity)
+        share = checks.number(rise, "rise", least=0.0, most=1.0)
+        if quantity == "velocity" and kind == "triangle" and share in (0.0, 1.0):
+            raise InputError("rise", f"must be > 0 and < 1 for a velocity, which must not jump; got {rise}")
+        made = pulse_samples(kind, time_in(duration, "duration", unit), share)
+        return cls._formula_record(made, amplitude, quantity, unit, {"name": kind, **more})
+
+    @classmethod
+    def sweep(
+        cls,
+        start: float | str,
+        stop: float | str,
+        duration: float | str,
+        *,
+        law: str = "linear",
+        amplitude: float | str = 1.0,
+        quantity: str = "acceleration",
+        unit: str | None = None,
+        **more: Any,
+    ) -> "Record":
+        """A sine of changing frequency, such as a run-up, exact to 1e-9 of its amplitude.
+
+        Parameters
+        ----------
+        start, stop : float or str
+            Frequencies at the beginning and at the end, > 0: in Hz, of a record without a unit over omega_1.
+        duration : float or str
+            Time between them, > 0.
+        law : {"linear", "log"}
+            Frequency over time: a straight line, or an exponential.
+        amplitude, quantity, unit, more
+            As of `pulse`.
+
+        Raises
+        ------
+        InputError
+            A value is out of range, or the sweep needs more than 10^7 samples, 252 per cycle of the highest
+            frequency.
+        """
+        _checked(quantity, unit)
+        checks.choice(law, "law", LAWS)
+        if quantity == "displacement":
+            raise InputError(
+                "cannot use",
+                "a sweep",
+                "of displacement: the velocity of the base would jump at its ends; give the acceleration",
+            )
+        turn = angular(unit)
+        first, last = (
+            turn * frequency_in(value, name, unit) for name, value in (("start", start), ("stop", stop))
+        )
+        made = sweep_samples(first, last, time_in(duration, "duration", unit), law)
+        return cls._formula_record(made, amplitude, quantity, unit, {"name": "sweep", **more})
+
+    @classmethod
+    def _formula_record(
+        cls, made: Formula, amplitude: float | str, quantity: str, unit: str | None, more: Mapping[str, Any]
+    ) -> "Record":
+        size = number_in(amplitude, "amplitude", KINDS[quantity], unit and _unit(unit, quantity))
+        slopes = None if made.slopes is None else size * made.slopes
+        return cls(
+            size * made.values, time=made.times, quantity=quantity, unit=unit,
+            interpolation=made.interpolation, slopes=slopes, **more,
+        )  # fmt: skip
+
+    def scaled_to(self, peak: float | str) -> "Record":
+        """The record times a factor, so that its largest absolute sample is `peak`.
+
+        peak : in the unit of the record, or with a unit, > 0
+
+        Raises
+        ------
+        InputError
+            It is not above 0, or all samples are 0.
+        """
+        size = number_in(peak, "peak", KINDS[self.quantity], self.unit, above=0.0)
+        largest = float(np.abs(self.values).max())
+        if largest == 0.0:
+            raise InputError(f"cannot scale a record to peak {peak}: all its samples are 0; give another one")
+        return replace(self, scale=size / largest)
+
     def _repr_html_(self) -> str:
         return f"<pre>{self!r}</pre>"
 
@@ -229,8 +370,16 @@ class Record(Shown):
         else:
             steps = np.full(times.size - 1, step)
             times = np.arange(times.size) * step
+        if self.slopes is not None:
+            return with_slopes(times, steps, self.values * self.scale, self.slopes * self.scale)
         ends = "clamped" if self.quantity == "displacement" else "natural"
         return interpolated(times, steps, self.values * self.scale, str(self.interpolation), ends)
+
+
+def _checked(quantity: str, unit: object) -> None:
+    checks.choice(quantity, "quantity", QUANTITIES)
+    if unit is not None:
+        _unit(unit, quantity)
 
 
 def _unit(given: object, quantity: str) -> str:

@@ -410,7 +410,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "friction ratios; with [units] also forces, or accelerations of friction over m_1",
             either(_FRICTION, several(_FRICTION)),
             example="[0.2]",
-            words='a number >= 0, or with a unit of force or acceleration, such as "0.05 g"; or a list of them',
+            words='a number >= 0, or with a unit of force or acceleration, such as "0.05 g"; or a list',
         ),
         Key(
             "friction",

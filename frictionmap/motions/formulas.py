@@ -1,7 +1,8 @@
 """Pulses and sweeps: samples with slopes, dense enough for 1e-9 of the amplitude between them.
 
 Cubics with exact values and slopes at both ends of an interval h are at most h^4/384 times the largest fourth
-derivative away from a function.  Rectangles and triangles are straight lines between their corners, without any error.
+derivative away from a function.  Rectangles and triangles are straight lines between their corners, without
+any error.
 """
 
 import math

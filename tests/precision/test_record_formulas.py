@@ -115,7 +115,11 @@ LOAD = fm.Units(natural_frequency="2.5 Hz", load="20 N")
 @pytest.mark.parametrize(
     ("units", "record", "message"),
     [
-        (None, Record([0, 1], 0.1, unit="g"), "cannot convert seconds to ratios: a reference value is missing; give units.natural_frequency"),
+        (
+            None,
+            Record([0, 1], 0.1, unit="g"),
+            "cannot convert seconds to ratios: a reference value is missing; give units.natural_frequency",
+        ),
         (FREQUENCY, Record([0, 1], 0.1, quantity="force", unit="N"), "give units.load"),
         (LOAD, Record([0, 1], 0.1, unit="g"), "units.load alone does not state it; give units.stiffness"),
     ],

@@ -371,8 +371,8 @@ def build_parser() -> argparse.ArgumentParser:
     sub = command("reduce", "small matrices of a structure with many degrees of freedom", text)
     _takes_config(sub, out="SMALL.npz")
     text = (
-        "Follow motions in time under records: earthquakes, pulses, measured loads; print peaks, stops and the "
-        "place of rest; write NetCDF."
+        "Follow motions in time under records: earthquakes, pulses, measured loads; print peaks, stops and "
+        "the place of rest; write NetCDF."
     )
     sub = command("history", "motions in time under records", text)
     _takes_config(sub, "CONFIG", "configuration with a table [record]", "history.beta=[0.1,0.2]")

@@ -103,7 +103,8 @@ class Motions:
             masses = np.empty((0, self.problem.squares.size))
             record = make_record(self.problem, masses, 0)
             kept = make_kept(self.problem, self.watched.weights, rounding, record, room)
-            memory = make_memory(self.problem, self.watched.weights.shape[0], self._even)
+            one = self.problem._replace(rates=np.ones(1))  # room for the channels of one interval
+            memory = make_memory(one, self.watched.weights.shape[0], self._even)
             status, done, asleep = follow_record(
                 self.problem, friction, memory, course, start, asked.start.sense, kept, bed, limits
             )

@@ -41,8 +41,8 @@ def motion_scales(units: Units | None, system: System) -> Scales:
     if units is None or scales.frequency is None or scales.force is not None or scales.length is not None:
         return scales
     length = _FREE / _omega(scales, "") ** 2
-    softness = scales_of(replace(units, load="1 N"), system).length  # 1/k_1, if anything states k_1
-    return Scales(scales.frequency, None if softness is None else length / softness, length)
+    force = None if scales.stiffness is None else length * scales.stiffness
+    return replace(scales, force=force, length=length)
 
 
 def _omega(scales: Scales, of: str) -> Fraction:

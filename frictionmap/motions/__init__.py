@@ -16,6 +16,9 @@ structure      a system under channels as arrays for the kernels, and what is wa
 starts         states at the beginning: at rest, given, or where another motion ended
 cells          the motions of a grid of records, scales and friction, on several threads
 dataset        `history`: motions in time as labelled variables
+lanes          oscillators with friction under one record, eight at a time
+spectra        `spectrum`: friction response spectra of one mass
+statistics     medians, quantiles and exceedance over records
 configuration  the tables [record], [history] and [spectrum] of a configuration
 =============  ================================================================================
 """

@@ -2,12 +2,16 @@
 
 The structure, its contacts, the series of a step and the events are those of `general`.
 
-==========  ====================================================================
-module      what is in it
-==========  ====================================================================
-kept        peaks, works, slides, events and samples of a motion in time
-tables      intervals in which nothing happens, by sums
-asleep      when a motion under no load has ended for all contacts
-motion      the motion under a record, and after it
-==========  ====================================================================
+===============  ====================================================================
+module           what is in it
+===============  ====================================================================
+kept             peaks, works, slides, events and samples of a motion in time
+tables           intervals in which nothing happens, by sums
+asleep           when a motion under no load has ended for all contacts
+motion           the motion under a record, and after it
+spectrum_lanes   eight oscillators of one mass through samples without events
+spectrum_sample  one of them through a sample with events
+spectrum_rest    one of them after the record, until it rests
+spectrum         peaks and stops of eight oscillators under a record
+===============  ====================================================================
 """

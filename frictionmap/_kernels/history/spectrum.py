@@ -1,0 +1,130 @@
+"""Peaks and stops of eight oscillators with friction under one record."""
+
+import math
+
+import numpy as np
+
+from ..compiler import entry, kernel
+from ..compiler.packed import packed
+from ..compiler.vectors import LANES
+from .spectrum_lanes import (
+    ACC,
+    BETA,
+    DAMPING,
+    FORCE,
+    FOURTH_A,
+    FOURTH_D,
+    FOURTH_V,
+    OLD_ACC,
+    OLD_PEAK,
+    OLD_V,
+    OLD_X,
+    PEAK,
+    RATE,
+    SERIES,
+    SLIDES,
+    SQUARE,
+    STATE_ROWS,
+    STATIC,
+    TABLE_ROWS,
+    Lanes,
+    V,
+    X,
+    fill_tables,
+    pass_quiet,
+)
+from .spectrum_rest import rest
+from .spectrum_sample import follow_sample, stick
+
+#: Oscillators that are followed: rows of their w, zeta, beta, mu.
+FREQUENCY, RATIO, FRICTION, STATIC_RATIO = 0, 1, 2, 3
+
+
+@kernel
+def _put(lanes, cells):
+    """Put eight oscillators at rest in the lanes."""
+    state = lanes.state
+    for i in range(LANES):
+        w, zeta = cells[FREQUENCY, i], cells[RATIO, i]
+        state[SQUARE, i], state[DAMPING, i] = w * w, 2.0 * zeta * w
+        state[RATE, i] = w * (zeta + math.sqrt((zeta - 1.0) * (zeta + 1.0)) if zeta > 1.0 else 1.0)
+        state[BETA, i], state[STATIC, i] = cells[FRICTION, i], cells[STATIC_RATIO, i] * cells[FRICTION, i]
+        stick(state, i)
+
+
+@kernel
+def _may_peak(record, lanes, i, k):
+    """Whether the acceleration of lane i may have an extremum within sample k, which has no event."""
+    state, table, h = lanes.state, lanes.tables[record.which[k]], record.steps[k]
+    rise = record.ends[k] - record.begins[k]
+    v, acc = state[OLD_V, i], state[OLD_ACC, i]
+    bound = table[FOURTH_V, i] * abs(v) + table[FOURTH_A, i] * abs(acc) + table[FOURTH_D, i] * abs(rise)
+    load = 0.0 if record.base else rise / h
+    before = state[DAMPING, i] * acc + state[SQUARE, i] * v - load
+    after = state[DAMPING, i] * state[ACC, i] + state[SQUARE, i] * state[V, i] - load
+    # between its ends the slope leaves its chord by h^2/8 times its second derivative, which `bound` has
+    return before * after <= 0.0 or min(abs(before), abs(after)) <= bound * 48.0 / (h * h)
+
+
+@kernel
+def _follow_curved(record, lanes, k):
+    """Follow all lanes through a sample in which the load is curved."""
+    state = lanes.state
+    for i in range(LANES):
+        if record.jumps[k]:
+            resist = state[FORCE, i] + state[DAMPING, i] * state[V, i] + state[SQUARE, i] * state[X, i]
+            state[ACC, i] = state[SLIDES, i] * (record.begins[k] - resist)
+        state[OLD_X, i], state[OLD_V, i] = state[X, i], state[V, i]
+        state[OLD_ACC, i], state[OLD_PEAK, i] = state[ACC, i], state[PEAK, i]
+        follow_sample(record, lanes, i, k)
+
+
+@kernel
+def _follow_straight(record, lanes):
+    """Follow all lanes through a record of straight lines."""
+    k = 0
+    while True:
+        k, events, peaks = pass_quiet(record, lanes, k)
+        if k == record.ends.size:
+            return
+        for i in range(LANES):
+            if events >> i & 1 or (peaks >> i & 1 and _may_peak(record, lanes, i, k)):
+                follow_sample(record, lanes, i, k)
+        k += 1
+
+
+@entry
+def follow_lanes(record, lengths, duration, cells):
+    """Follow eight oscillators from rest through a record, and on until they rest for good.
+
+    Parameters
+    ----------
+    record : Load
+    lengths : (T,) distinct lengths of samples
+    duration : of the record
+    cells : (4, LANES) w, zeta, beta, mu
+
+    Returns
+    -------
+    (STATE_ROWS, LANES) : see `spectrum_lanes`
+    """
+    lanes = Lanes(
+        np.zeros((STATE_ROWS, LANES)), np.zeros((lengths.size, TABLE_ROWS, LANES)), np.zeros((3, SERIES))
+    )
+    _follow(record, lanes, lengths, duration, cells)
+    return lanes.state
+
+
+@kernel
+def _follow(record, lanes, lengths, duration, cells):
+    """See `follow_lanes`, which keeps the arrays."""
+    record, lanes = packed(record), packed(lanes)
+    _put(lanes, cells)
+    fill_tables(lanes, lengths, record.curved)
+    if record.curved:
+        for k in range(record.ends.size):
+            _follow_curved(record, lanes, k)
+    else:
+        _follow_straight(record, lanes)
+    for i in range(LANES):
+        rest(lanes, i, duration)

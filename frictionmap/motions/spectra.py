@@ -1,0 +1,255 @@
+"""`spectrum`: friction response spectra, the peaks of one mass with friction over its natural period."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from .. import checks
+from ..errors import InputError
+from ..jobs import Progress, Watch, run_jobs
+from ..units.quantities import quantities
+from ..units.table import UNITS, known_unit
+from .lanes import Driven, Oscillators, Responses, driven, follow, in_lanes, parts_of
+from .pieces import Pieces, derivative
+from .record import KINDS, Record
+
+DIMS = ("record", "scale", "mu", "period", "beta")
+
+#: Variables: meaning, unit without units of the record, SI unit, and type.
+VARIABLES = {
+    "amplitude": ("largest displacement", "m", np.float64),
+    "acceleration_amplitude": ("largest absolute acceleration", "m s-2", np.float64),
+    "residual": ("place where the mass comes to rest", "m", np.float64),
+    "sliding_distance": ("sliding distance", "m", np.float64),
+    "stops": ("stops: ends of slides", "1", np.int64),
+    "turns": ("changes of the sense of a slide without a stop", "1", np.int64),
+    "asleep_time": ("time from which the contact does not move again", "s", np.float64),
+    "status": ("how the motion ended", "1", np.int8),
+}
+
+_LENGTHS = ("amplitude", "residual", "sliding_distance")
+_STATUSES = "resolved ringing creeping too_many_events"
+
+
+class Grid(NamedTuple):
+    """The oscillators that are wanted under every record; forces are over the mass."""
+
+    records: tuple[Record, ...]
+    scale: np.ndarray
+    mu: np.ndarray
+    period: np.ndarray
+    friction: np.ndarray
+    damping: float
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of records, and of values along the axes."""
+        return len(self.records), self.scale.size, self.mu.size, self.period.size, self.friction.size
+
+
+def _records(given: Any) -> tuple[Record, ...]:
+    several = isinstance(given, Sequence)
+    listed = tuple(given) if several else (given,)
+    if not listed:
+        raise InputError("records", "must be a Record or a list of them; got none")
+    for k, one in enumerate(listed):
+        checks.instance(one, f"records[{k}]" if several else "records", Record)
+    units = {one.unit is None for one in listed}
+    if len(units) > 1:
+        raise InputError("records", "must all have a unit, or none; got some with and some without")
+    if len({one.quantity == "force" for one in listed}) > 1:
+        raise InputError("records", "must all be forces, or all motions of the base; got both")
+    return listed
+
+
+def _size(record: Record) -> float:
+    """Factor of the values of a record in SI units."""
+    if record.unit is None:
+        return 1.0
+    if record.quantity == "force":
+        raise InputError(
+            "records",
+            f"must be forces over the mass, without a unit; got {record.unit!r}",
+        )
+    kind, name = KINDS[record.quantity], known_unit(record.unit)
+    if name is None or UNITS[name].measures != kind:
+        raise InputError("unit", f"must be one of {kind}; got {record.unit!r}")
+    return float(UNITS[name].size)
+
+
+def load_of(record: Record) -> Pieces:
+    """Load on a mass 1 as polynomials: the force, or minus the acceleration of the base."""
+    pieces = record.pieces
+    sign = 1.0 if record.quantity == "force" else -1.0
+    for _ in range({"velocity": 1, "displacement": 2}.get(record.quantity, 0)):
+        pieces = derivative(pieces)
+    return pieces._replace(terms=sign * _size(record) * pieces.terms)
+
+
+def _friction(given: Any, records: tuple[Record, ...]) -> np.ndarray:
+    """Friction force over the mass."""
+    values = quantities(given, "friction", "acceleration")
+    if (values is not None) != (records[0].unit is not None):
+        hint = 'with a unit, as "0.05 g", because the records have one'
+        if values is not None:
+            hint = "plain numbers, because the records have no unit"
+        raise InputError("friction", f"must be {hint}; got {checks.one_line(given)}")
+    return checks.axis(given if values is None else [float(one) for one in values], "friction", least=0.0)
+
+
+def _periods(given: Any) -> np.ndarray:
+    """Periods > 0; infinite without a spring."""
+    values = np.atleast_1d(checks.array(given, "period"))
+    if values.dtype.kind in "iuf" and values.ndim == 1 and values.size and np.isposinf(values[-1]):
+        finite = checks.axis(values[:-1], "period", least=0.0) if values.size > 1 else np.empty(0)
+        found = np.append(finite, np.inf)
+    else:
+        found = checks.axis(values, "period", least=0.0)
+    if found[0] == 0.0:
+        raise InputError("period", "must be > 0; got 0")
+    return found
+
+
+def _scales(given: Any) -> np.ndarray:
+    return checks.axis(given, "scale", least=-np.inf)
+
+
+def spectrum(
+    records: Record | Sequence[Record],
+    period: ArrayLike,
+    friction: Any,
+    *,
+    mu: ArrayLike = 1.0,
+    damping: float = 0.0,
+    scale: ArrayLike = 1.0,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    watch: Watch | None = None,
+) -> xr.Dataset:
+    """Compute friction response spectra: peaks of one mass with friction, over its natural period.
+
+    The mass is held by a spring, a damper and a contact that move with the base, or stands on the ground
+    under a force.  It starts at rest, and is followed after the record until it rests for good.  Everything
+    is exact to rounding for the interpolated record.
+
+    Parameters
+    ----------
+    records : Record or sequence of Record
+        Motions of the base, or forces over the mass.
+    period : array_like
+        Natural periods, > 0, increasing, in the unit of time of the records; ``inf`` is a block without a
+        spring.
+    friction : array_like
+        Kinetic friction forces over the mass, >= 0, increasing; with a unit, such as ``"0.05 g"``, if the
+        records have one.
+    mu : array_like
+        Ratios of static to kinetic friction [-], >= 1, increasing.
+    damping : float
+        Damping ratio [-], >= 0.
+    scale : array_like
+        Factors of the records, increasing.
+    threads : int, optional
+        Number of threads; default: all processors.  The result is equal to the bit for any number.
+    progress, watch : callable, optional
+        As in `sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (record, scale, mu, period, beta): largest displacement and absolute acceleration, residual
+        displacement, sliding distance, stops, turns.
+
+    Raises
+    ------
+    InputError
+        An argument has the wrong type or is out of range.
+
+    Examples
+    --------
+    A block that slides without a spring, under a push of 1 for 2 s against friction of 0.3:
+
+    >>> import frictionmap as fm
+    >>> push = fm.Record([1.0, 1.0], dt=1.0, quantity="force", interpolation="hold")
+    >>> float(spectrum(push, float("inf"), 0.3).amplitude.squeeze().round(12))
+    4.666666666667
+    """
+    listed = _records(records)
+    grid = Grid(
+        listed, _scales(scale), checks.axis(mu, "mu", least=1.0), _periods(period),
+        _friction(friction, listed), checks.number(damping, "damping", least=0.0),
+    )  # fmt: skip
+    checks.cells(grid.mu.size, grid.period.size, grid.friction.size, points=len(listed) * grid.scale.size)
+    return _labelled(grid, _followed(grid, checks.threads(threads), progress, watch))
+
+
+def _oscillators(grid: Grid) -> tuple[Oscillators, np.ndarray]:
+    """Oscillators under one record, and the factor of the record of each.
+
+    A record times s and friction times s are the motion times s: friction is divided by it instead.
+    """
+    scale, mu, period, beta = np.meshgrid(grid.scale, grid.mu, grid.period, grid.friction, indexing="ij")
+    with np.errstate(divide="ignore", invalid="ignore"):
+        beta = np.where(scale == 0.0, np.inf, beta / np.abs(scale))
+    w = 2.0 * np.pi / period
+    flat = [one.ravel() for one in (w, np.full(w.shape, grid.damping), beta, mu)]
+    return Oscillators(*flat), scale.ravel()
+
+
+def _followed(grid: Grid, threads: int, progress: Progress | None, watch: Watch | None) -> np.ndarray:
+    """What became of all oscillators, (variables, *grid.shape)."""
+    these, scale = _oscillators(grid)
+    found = np.zeros((len(Responses._fields), len(grid.records), scale.size))
+    jobs: list[tuple[Callable[..., None], tuple]] = []
+    for k, record in enumerate(grid.records):
+        pieces = load_of(record)
+        parts = parts_of(pieces, these.w, these.zeta)
+        drives: dict[int, Driven] = {}
+        for count, members in in_lanes(parts):
+            if count not in drives:
+                drives[count] = driven(pieces, count, record.quantity != "force")
+            jobs.append((_run, (drives[count], these, members, found[:, k])))
+    done = 0
+
+    def count_one(_: int) -> None:
+        nonlocal done
+        done += 1
+        if progress is not None:
+            progress(done, len(jobs))
+
+    run_jobs(jobs, threads, count_one, watch)
+    for name in ("amplitude", "acceleration_amplitude", "sliding_distance"):
+        found[Responses._fields.index(name)] *= np.abs(scale)
+    found[Responses._fields.index("residual")] *= scale
+    return found.reshape((len(found), *grid.shape))
+
+
+def _run(drive: Driven, these: Oscillators, members: np.ndarray, found: np.ndarray) -> None:
+    """Follow some oscillators; found : (variables, oscillators)."""
+    found[:, members] = follow(drive, Oscillators(*(values[members] for values in these)))
+
+
+def _labelled(grid: Grid, found: np.ndarray) -> xr.Dataset:
+    physical = grid.records[0].unit is not None
+    variables = {}
+    for name, values in zip(Responses._fields, found, strict=True):
+        long_name, unit, kind = VARIABLES[name]
+        attrs: dict[str, Any] = {"long_name": long_name, "units": unit if physical else "1"}
+        if name in _LENGTHS and grid.records[0].quantity != "force":
+            attrs["comment"] = "relative to the base"
+        if name == "status":
+            attrs |= {"flag_values": np.arange(4, dtype=np.int8), "flag_meanings": _STATUSES}
+        variables[name] = (DIMS, values.astype(kind), attrs)
+    coords = {
+        "record": ("record", np.arange(1, len(grid.records) + 1), {"long_name": "record, counted from 1"}),
+        "scale": ("scale", grid.scale, {"long_name": "factor of the record", "units": "1"}),
+        "mu": ("mu", grid.mu, {"long_name": "ratio of static to kinetic friction force", "units": "1"}),
+        "period": ("period", grid.period, {"long_name": "natural period", "units": "s" if physical else "1"}),
+        "beta": (
+            "beta", grid.friction,
+            {"long_name": "kinetic friction force over the mass", "units": "m s-2" if physical else "1"},
+        ),
+    }  # fmt: skip
+    return xr.Dataset(variables, coords, {"damping": grid.damping})

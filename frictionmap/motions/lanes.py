@@ -101,7 +101,7 @@ def in_lanes(parts: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
 
 
 def follow(drive: Driven, these: Oscillators) -> Responses:
-    """Follow up to eight oscillators from rest through a record, and on until they rest for good."""
+    """Follow up to eight oscillators from rest through a record, and on until they rest permanently."""
     count = these.w.size
     cells = np.zeros((4, LANES))
     cells[2], cells[3] = _HOLDS, 1.0

@@ -132,7 +132,7 @@ def spectrum(
     """Compute friction response spectra: peaks of one mass with friction, over its natural period.
 
     The mass is held by a spring, a damper and a contact that move with the base, or stands on the ground
-    under a force.  It starts at rest, and is followed after the record until it rests for good.  Everything
+    under a force.  It starts at rest, and is followed after the record until it rests permanently.  Everything
     is exact to rounding for the interpolated record.
 
     Parameters

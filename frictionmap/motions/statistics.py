@@ -123,7 +123,7 @@ def lognormal(values: xr.DataArray) -> xr.Dataset:
     count = given.sizes["record"]
     if count < 2:
         raise InputError("values", f"must have at least 2 records; got {count}")
-    logs = np.log(given.where(given > 0.0))
+    logs: xr.DataArray = xr.apply_ufunc(np.log, given.where(given > 0.0))
     mean = logs.mean("record", skipna=False)
     spread = np.sqrt(((logs - mean) ** 2).sum("record", skipna=False) / (count - 1.0))
     middle = np.exp(mean)

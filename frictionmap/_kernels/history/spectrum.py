@@ -95,7 +95,7 @@ def _follow_straight(record, lanes):
 
 @entry
 def follow_lanes(record, lengths, duration, cells):
-    """Follow eight oscillators from rest through a record, and on until they rest for good.
+    """Follow eight oscillators from rest through a record, and on until they rest permanently.
 
     Parameters
     ----------

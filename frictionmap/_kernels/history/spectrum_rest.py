@@ -1,4 +1,4 @@
-"""One oscillator after its record, without load, until it rests for good."""
+"""One oscillator after its record, without load, until it rests permanently."""
 
 import math
 

@@ -11,10 +11,10 @@ from .. import checks
 from ..errors import InputError
 from ..jobs import Progress, Watch, run_jobs
 from ..units.quantities import quantities
-from ..units.table import UNITS, known_unit
+from ..units.table import UNITS
 from .lanes import Driven, Oscillators, Responses, driven, follow, in_lanes, parts_of
 from .pieces import Pieces, derivative
-from .record import KINDS, Record
+from .record import Record
 
 DIMS = ("record", "scale", "mu", "period", "beta")
 
@@ -66,18 +66,18 @@ def _records(given: Any) -> tuple[Record, ...]:
 
 
 def _size(record: Record) -> float:
-    """Factor of the values of a record in SI units."""
-    if record.unit is None:
-        return 1.0
-    if record.quantity == "force":
+    """Factor of the values of a record: of its unit in SI, and of a force its share on the mass."""
+    if record.quantity != "force":
+        return 1.0 if record.unit is None else float(UNITS[record.unit].size)
+    if record.unit is not None:
         raise InputError(
-            "records",
-            f"must be forces over the mass, without a unit; got {record.unit!r}",
+            "records", f"must be forces over the mass, without a unit; got {checks.one_line(record.unit)}"
         )
-    kind, name = KINDS[record.quantity], known_unit(record.unit)
-    if name is None or UNITS[name].measures != kind:
-        raise InputError("unit", f"must be one of {kind}; got {record.unit!r}")
-    return float(UNITS[name].size)
+    if record.mass not in (None, 1):
+        raise InputError("mass", f"must be 1, as a spectrum is of one mass; got {record.mass}")
+    if record.vector is not None and len(record.vector) != 1:
+        raise InputError("vector", f"must have one number, for one mass; got {len(record.vector)}")
+    return 1.0 if record.vector is None else float(record.vector[0])
 
 
 def load_of(record: Record) -> Pieces:
@@ -132,8 +132,8 @@ def spectrum(
     """Compute friction response spectra: peaks of one mass with friction, over its natural period.
 
     The mass is held by a spring, a damper and a contact that move with the base, or stands on the ground
-    under a force.  It starts at rest, and is followed after the record until it rests permanently.  Everything
-    is exact to rounding for the interpolated record.
+    under a force.  It starts at rest, and is followed after the record until it rests permanently.
+    Everything is exact to rounding for the interpolated record.
 
     Parameters
     ----------

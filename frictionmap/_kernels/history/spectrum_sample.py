@@ -8,7 +8,7 @@ import math
 
 from ..compiler import kernel
 from ..general.problem import PIECE_TERMS
-from ..taylor_series import first_root
+from ..taylor_series import MAX_POLISH, ONE_STEP, cubic_root, first_root, reversion
 from .motion import RESOLVED, TOO_MANY_EVENTS
 from .spectrum_lanes import (
     ACC,
@@ -91,6 +91,8 @@ def _fill_load(pieces, begin, rest, series):
     row = series[LOAD]
     for k in range(PIECE_TERMS):
         row[k] = pieces[k]
+    if begin == 0.0:
+        return
     for i in range(PIECE_TERMS - 1):
         for k in range(PIECE_TERMS - 2, i - 1, -1):
             row[k] += begin * row[k + 1]
@@ -98,6 +100,46 @@ def _fill_load(pieces, begin, rest, series):
     for k in range(PIECE_TERMS):
         row[k] *= scale
         scale *= rest
+
+
+@kernel
+def _derivatives(row, first, terms, x):
+    """Value, and derivatives over their factorials, of a series without the first factors x."""
+    value = slope = bend = third = 0.0
+    for k in range(terms - 1, first - 1, -1):
+        third = third * x + bend
+        bend = bend * x + slope
+        slope = slope * x + value
+        value = value * x + row[k]
+    return value, slope, bend, third
+
+
+@kernel
+def _first_zero(row, first, terms):
+    """First zero in (0, 1] of a series that begins with the positive term `first`; NONE without one.
+
+    Where the series certainly falls all the way, the zero of the cubic through its ends is improved to
+    fourth order; else the steps of `first_root` pass no zero.
+    """
+    others = bend = 0.0
+    for k in range(first + 1, terms):
+        others += abs(row[k])
+        bend += (k - first) * (k - first - 1.0) * abs(row[k])
+    if row[first] > others:
+        return NONE
+    if -row[first + 1] <= bend:
+        return first_root(row, first, terms)
+    end = _derivatives(row, first, terms, 1.0)
+    if end[0] > 0.0:
+        return NONE
+    x = cubic_root(row[first], row[first + 1], end[0], end[1])
+    for _ in range(MAX_POLISH):
+        value, slope, second, third = _derivatives(row, first, terms, x)
+        step = reversion(value, slope, 2.0 * second, 6.0 * third)
+        x = min(max(x + step, 0.0), 1.0)
+        if abs(step) <= ONE_STEP:
+            break
+    return x
 
 
 @kernel
@@ -262,21 +304,21 @@ def slide(lanes, i, h, base, terms):
     sense = state[SENSE, i]
     rates[0], rates[1] = state[V, i], h * state[ACC, i]
     fill_rates(lanes.series, h, state[DAMPING, i], state[SQUARE, i], terms)
-    first = terms
-    for k in range(terms - 1, -1, -1):
+    for k in range(terms):
         row[k] = sense * rates[k]
-        if row[k] != 0.0:
-            first = k
+    first = 0
+    while first < terms and row[first] == 0.0:
+        first += 1
     if first == terms:
         return NONE
-    found = first_root(row, first, terms) if row[first] > 0.0 else 0.0
+    found = _first_zero(row, first, terms) if row[first] > 0.0 else 0.0
     end = min(found, 1.0)
-    v = _value(rates, terms, end)
+    v = place = 0.0
+    for k in range(terms - 1, -1, -1):
+        v = v * end + rates[k]
+        place = place * end + rates[k] * INVERSE[k + 1]
     if found > 1.0 and sense * v <= 0.0:
         found = 1.0  # the last rounding error
-    place = 0.0
-    for k in range(terms - 1, -1, -1):
-        place = place * end + rates[k] * INVERSE[k + 1]
     x = state[X, i] + h * end * place
     pull = _value(lanes.series[LOAD], PIECE_TERMS, end) - state[SQUARE, i] * x
     resist = state[FORCE, i] + state[DAMPING, i] * v

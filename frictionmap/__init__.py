@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     from .model.system import System
     from .motions.dataset import history
     from .motions.record import Record
+    from .motions.spectra import spectrum
     from .plot import (
         animate,
         plot_boundaries,
@@ -159,6 +160,7 @@ _HOME = {
     "plot_shares": "plot",
     "response": "steady.response",
     "shares": "probabilities",
+    "spectrum": "motions.spectra",
     "sweep": "steady.sweep",
 }
 

@@ -377,6 +377,13 @@ def build_parser() -> argparse.ArgumentParser:
     sub = command("history", "motions in time under records", text)
     _takes_config(sub, "CONFIG", "configuration with a table [record]", "history.beta=[0.1,0.2]")
     _takes_threads(sub)
+    text = (
+        "Compute friction response spectra: peaks and residual displacements of one mass under records, over "
+        "its natural period and friction; write NetCDF."
+    )
+    sub = command("spectrum", "friction response spectra under records", text)
+    _takes_config(sub, "CONFIG", "configuration with tables [record] and [spectrum]", "spectrum.damping=0.05")
+    _takes_threads(sub)
     _takes_files(command)
     _takes_beginnings(command)
     return parser

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from ..explorer.scene import Scene
     from ..files.config import Config
     from ..files.places import Output
+    from ..motions.configuration import Task
     from ..stores.run import Fill
     from .progress import Progress
 
@@ -347,18 +348,30 @@ def _design(options: Options) -> None:
 
 def _history(options: Options) -> None:
     """Follow the motions of a configuration under its records."""
+    from ..motions.configuration import load_history
+
+    task = load_history(options.config, options.overrides)
+    _follow_records(options, task, f"{task.motions:,} motion{'s' * (task.motions != 1)} in time")
+
+
+def _spectrum(options: Options) -> None:
+    """Compute the friction response spectra of a configuration."""
+    from ..motions.configuration import load_spectrum
+
+    task = load_spectrum(options.config, options.overrides)
+    _follow_records(options, task, f"spectra of {task.motions:,} motions")
+
+
+def _follow_records(options: Options, task: "Task", what: str) -> None:
     from .._kernels.compiler.notices import listening
     from ..files.motions import describe_motions
     from ..files.places import claimed
     from ..files.storage import write_netcdf
-    from ..motions.configuration import load_history
     from .progress import Progress
 
     _refuse_ending(options)
-    task = load_history(options.config, options.overrides)
-    path = options.output or Path(f"{task.name}-history.nc")
+    path = options.output or Path(f"{task.name}-{options.command}.nc")
     with claimed(path, options.overwrite, task.files) as output:
-        what = f"{task.motions:,} motion{'s' * (task.motions != 1)} in time"
         with Progress(what, options.quiet) as progress, listening(progress.compiling):
             ds = task.ask(threads=options.threads, progress=progress)
             ds.attrs |= {"title": task.title, "config": task.text}
@@ -565,6 +578,7 @@ _COMMANDS: dict[str, Callable[[Options], None]] = {
     "identify": _identify,
     "design": _design,
     "history": _history,
+    "spectrum": _spectrum,
     "export": _export,
     "explore": _explore,
     "init": _init,

@@ -126,6 +126,16 @@ def _chain(name: str, meaning: str) -> Key:
 #: Friction of motions in time.
 _FRICTION = either(number(least=0.0), with_unit("force"), with_unit("acceleration"))
 
+
+def _spread(kind: str) -> Schema:
+    """Numbers with or without a unit: one, a list, or a range with its spacing."""
+    value = either(number(least=0.0), with_unit(kind))
+    ends = {"start": value, "stop": value, "num": whole(least=2), "spacing": word("linear", "log")}
+    return either(value, several(value), table(ends, ("start", "stop", "num")))
+
+
+_SPREAD_TIME, _SPREAD_FRICTION = _spread("time"), _spread("acceleration")
+
 #: Keys of [system] for several contacts, springs in contacts, belts and periodic loads.
 GENERAL_KEYS = (
     Key(
@@ -440,6 +450,47 @@ KEYS: dict[str, tuple[Key, ...]] = {
             words='"all", "none", or every so many samples',
         ),
     ),
+    "spectrum": (
+        Key(
+            "period",
+            "natural periods, in the unit of time of the records",
+            _SPREAD_TIME,
+            example="[1.0]",
+            words='a number, a list or { start, stop, num, spacing }, such as { start = "0.05 s", stop = "4 s", '
+            'num = 200, spacing = "log" }',
+        ),
+        Key(
+            "friction",
+            "friction over the mass",
+            _SPREAD_FRICTION,
+            example='["0.05 g"]',
+            words="as period; with a unit of acceleration if the records have a unit",
+        ),
+        Key("beta", "another name of friction", _SPREAD_FRICTION, example="[0.05]", words="as friction"),
+        Key(
+            "mu",
+            "ratios of static to kinetic friction",
+            either(number(least=1.0), several(number(least=1.0))),
+            1.0,
+        ),
+        Key("damping", "damping ratio", number(least=0.0), 0.0),
+        Key(
+            "quantities",
+            "output variables",
+            several(
+                word(
+                    "amplitude",
+                    "acceleration_amplitude",
+                    "residual",
+                    "sliding_distance",
+                    "stops",
+                    "turns",
+                    "asleep_time",
+                )
+            ),
+            example='["amplitude", "residual"]',
+        ),
+    ),
     "units": (
         _unit("natural_frequency", "frequency at r = 1: sqrt(k_1/m_1)/(2 pi), or frequency_scale/(2 pi)"),
         _unit("load", "friction force at beta = 1: the load amplitude P, or k_1 Y for base excitation"),
@@ -463,6 +514,7 @@ TABLES = {
     "curves": "For `frictionmap curves` only, which takes a short list of beta.",
     "design": "For `frictionmap design` only: which friction to choose.",
     "history": "For `frictionmap history`: friction, start, and what is kept.",
+    "spectrum": "For `frictionmap spectrum`: one mass under the records, over its natural period.",
     "units": "Optional: reference values that convert ratios to Hz and N; [grid] may then use these units.",
     "axes": "Further axes: values of [system] that vary, one per axis, or several together from a CSV file.",
 }

@@ -6,14 +6,18 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
+from .. import checks
 from ..errors import InputError
 from ..files.config import checked_table, common_tables, read_tree, within
 from ..model.system import System
 from ..units.scales import Units
+from ..units.quantities import quantities
 from .dataset import history
 from .record import Record
+from .spectra import spectrum
 from .table import records_of
 
 #: Keys of [record] that say how motions are followed, not what the records are.
@@ -78,6 +82,109 @@ def load_history(path: str | Path, overrides: Sequence[str] = ()) -> Task:
     ask = partial(_ask, common.system, records, common.units, arguments)
     motions = len(records) * _count(*(arguments.get(name) for name in ("scale", "beta", "mu")))
     return Task(common.title, path.stem, text, (*common.files, *files), motions, ask)
+
+
+def load_spectrum(path: str | Path, overrides: Sequence[str] = ()) -> Task:
+    """Read a configuration of friction response spectra; [system] and [grid] are not used.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or is not TOML; a key is unknown, missing or of the wrong type.
+    """
+    path = Path(path)
+    tree, text = read_tree(path, overrides)
+    title, records, files = _records(tree, path)
+    given, record = dict(checked_table(tree, "spectrum")), checked_table(tree, "record")
+    if "beta" in given:
+        if "friction" in given:
+            raise InputError(
+                "cannot use", "spectrum.beta", "with spectrum.friction: both are the friction; omit one"
+            )
+        given["friction"] = given.pop("beta")
+    for key in ("period", "friction"):
+        if key not in given:
+            raise InputError(f"spectrum.{key}", "must be given; got nothing")
+    try:
+        given["period"] = _periods(given["period"])
+        given["friction"] = _values(given["friction"], "friction", "acceleration")
+    except InputError as error:
+        raise within("spectrum", error) from None
+    if "after" in record:
+        raise InputError(
+            "cannot use", "record.after", "for spectra: motions are followed to their rest; omit it"
+        )
+    given |= {"scale": record["scale"]} if "scale" in record else {}
+    wanted = given.pop("quantities", None)
+    ask = partial(_ask_spectrum, records, given, wanted)
+    count = len(records) * _count(*(given.get(name) for name in ("scale", "mu", "period", "friction")))
+    return Task(title, path.stem, text, (path, *files), count, ask)
+
+
+def _records(tree: Mapping[str, Any], path: Path) -> tuple[str, tuple[Record, ...], tuple[Path, ...]]:
+    """Title and records of a configuration without a system."""
+    title = tree.get("title", path.stem)
+    if not isinstance(title, str):
+        raise InputError(f"title must be text; got {title!r}")
+    if "record" not in tree:
+        raise InputError("the configuration must have a table [record]; got none")
+    given = checked_table(tree, "record")
+    try:
+        found, files = records_of({k: v for k, v in given.items() if k not in _OF_MOTIONS}, path.parent)
+    except InputError as error:
+        raise (within("record", error) if error.where else error) from None
+    return title, found, files
+
+
+def _values(given: Any, name: str, kind: str) -> Any:
+    """A number or a list, of which a range `{ start, stop, num, spacing }` is a short form."""
+    if not isinstance(given, Mapping):
+        return given
+    valid = ("start", "stop", "num", "spacing")
+    for key in given:
+        if key not in valid:
+            raise InputError(f"unknown key {f'spectrum.{name}.{key}'!r}; valid: {', '.join(valid)}")
+    spacing = checks.choice(given.get("spacing", "linear"), f"{name}.spacing", ("linear", "log"))
+    ends = [given.get("start"), given.get("stop")]
+    texts = [isinstance(end, str) for end in ends]
+    found = quantities(ends, name, kind) if any(texts) else ends
+    start, stop = (checks.number(float(end), name, least=0.0) for end in found or ())
+    num = checks.whole(given.get("num"), f"{name}.num", least=2)
+    if spacing == "log" and start <= 0.0:
+        raise InputError(f"{name}.start", f"must be > 0 with spacing log; got {start:g}")
+    values = np.linspace(start, stop, num) if spacing == "linear" else np.geomspace(start, stop, num)
+    return (
+        [f"{value!r} m/s^2" for value in values.tolist()]
+        if any(texts) and kind == "acceleration"
+        else values.tolist()
+    )
+
+
+def _periods(given: Any) -> Any:
+    """Periods in seconds, or in the unit of time of the records."""
+    found = _values(given, "period", "time")
+    listed = found if isinstance(found, list) else [found]
+    if any(isinstance(one, str) for one in listed):
+        return [float(one) for one in quantities(listed, "period", "time") or ()]
+    return found
+
+
+def _ask_spectrum(
+    records: tuple[Record, ...], given: Mapping[str, Any], wanted: Sequence[str] | None, **options: Any
+) -> xr.Dataset:
+    """Compute the spectra; errors name keys of the tables."""
+    arguments = dict(given)
+    period, friction = arguments.pop("period"), arguments.pop("friction")
+    try:
+        ds = spectrum(records, period, friction, **arguments, **options)
+    except InputError as error:
+        where = error.where.partition("[")[0]
+        raise (within("spectrum", error) if where in given else error) from None
+    if wanted is None:
+        return ds
+    for name in wanted:
+        checks.choice(name, "spectrum.quantities", tuple(map(str, ds.data_vars)))
+    return ds[[*wanted, *(["status"] if "status" not in wanted else [])]]
 
 
 def _ask(

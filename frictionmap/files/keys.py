@@ -231,6 +231,118 @@ def _design_keys() -> tuple[Key, ...]:
     return (Key("question", "what to find", word(*names), names[0]), *keys.values())
 
 
+def _quantity_of_time(kind: str) -> Schema:
+    """A number of a record, in seconds or hertz without a unit."""
+    return either(number(), with_unit(kind))
+
+
+def _record_keys() -> tuple[Key, ...]:
+    """Keys of [record]: a source, and what is said of it."""
+    size = either(number(), *(with_unit(kind) for kind in ("force", "acceleration", "velocity", "length")))
+    time, frequency = _quantity_of_time("time"), _quantity_of_time("frequency")
+    pulse = {
+        "kind": word("rectangle", "triangle", "half-sine", "ricker"), "amplitude": size, "duration": time,
+        "rise": number(least=0.0, most=1.0),
+    }  # fmt: skip
+    swept = {
+        "from": frequency, "to": frequency, "duration": time, "law": word("linear", "log"), "amplitude": size,
+    }  # fmt: skip
+    made = {
+        "kind": word("white", "kanai-tajimi", "clough-penzien", "davenport", "table"), "duration": time,
+        "dt": time, "seed": whole(least=0), "count": whole(least=1), "level": number(above=0.0), "rms": size,
+        "peak": size, "envelope": either(word("trapezoid", "jennings"), {"type": "object"}),
+        "frequency": either(frequency, several(frequency, 2)), "damping": number(above=0.0),
+        "filter_frequency": frequency, "filter_damping": number(above=0.0),
+        "wind_speed": either(number(), with_unit("velocity")), "density": several(number(least=0.0), 2),
+    }  # fmt: skip
+    return (
+        Key("file", "a record over time", _NAME, example='"elcentro.at2"', words="the path of a file"),
+        Key(
+            "files",
+            "several records",
+            either(_NAME, several(_NAME)),
+            example='"suite/*.AT2"',
+            words="a pattern, or a list of paths",
+        ),
+        Key(
+            "pulse",
+            "instead of files: a pulse",
+            table(pulse, ("kind", "duration")),
+            example='{ kind = "half-sine", amplitude = 1.0, duration = 3.0 }',
+            words="{ kind, amplitude, duration, rise }; kind is rectangle, triangle, half-sine or ricker",
+        ),
+        Key(
+            "sweep",
+            "instead of files: a sine of changing frequency",
+            table(swept, ("from", "to", "duration")),
+            example="{ from = 0.5, to = 1.5, duration = 500.0 }",
+            words="{ from, to, duration, law, amplitude }; law is linear or log",
+        ),
+        Key(
+            "generate",
+            "instead of files: random records",
+            table(made, ("kind", "duration", "dt")),
+            example='{ kind = "white", duration = 100.0, dt = 0.05, rms = 1.0, seed = 1, count = 20 }',
+            words="{ kind, duration, dt, seed, count, level or rms or peak, envelope, keys of the kind }",
+        ),
+        Key(
+            "quantity",
+            "of the base, or a force; default: by column or format, else acceleration",
+            word("force", "acceleration", "velocity", "displacement"),
+            example='"acceleration"',
+        ),
+        Key("unit", "unit of the values; times are then in seconds", _NAME, example='"g"', words="a unit"),
+        Key(
+            "interpolation",
+            "between samples; default: linear, of displacements cubic",
+            word("linear", "cubic", "hold"),
+            example='"linear"',
+        ),
+        Key("dt", "time step of a file without times", number(above=0.0), example="0.01"),
+        Key(
+            "baseline",
+            "what is taken off the samples; default: the mean of K-NET files",
+            word("none", "mean", "linear"),
+            example='"mean"',
+        ),
+        Key("decimal", "decimal sign of a file of text", word(".", ","), example='","'),
+        Key(
+            "columns",
+            "columns of a table by time and the quantities",
+            {"type": "object"},
+            example='{ acceleration = "a_g" }',
+            words="as data.columns",
+        ),
+        Key("mass", "the mass that a force acts on; default: load_mass", DOF, example="2"),
+        Key(
+            "vector",
+            "instead of mass: shares of a force on all masses",
+            several(number()),
+            example="[1.0, 0.5]",
+        ),
+        Key(
+            "peak",
+            "largest absolute value that every record is scaled to",
+            size,
+            example='"0.4 g"',
+            words='a number, or with a unit, such as "0.4 g"',
+        ),
+        Key(
+            "scale",
+            "factors of the records",
+            either(number(), several(number())),
+            1.0,
+        ),
+        Key(
+            "after",
+            "how long the motion is followed after the record",
+            either(word("rest"), number(least=0.0)),
+            "rest",
+            words='"rest", or a time',
+        ),
+    )
+
+
 #: Keys by table; "" is no table.
 KEYS: dict[str, tuple[Key, ...]] = {
     "": (Key("title", "title of plots and files", _TEXT, example='"A title"'),),
@@ -414,6 +526,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         Key("harmonics", "highest harmonic; 0: none", whole(**RANGES["harmonics"]), _CURVES.harmonics),
     ),
     "design": _design_keys(),
+    "record": _record_keys(),
     "history": (
         Key(
             "beta",
@@ -513,6 +626,7 @@ TABLES = {
     "solver": "How steady states are found, and the output variables.",
     "curves": "For `frictionmap curves` only, which takes a short list of beta.",
     "design": "For `frictionmap design` only: which friction to choose.",
+    "record": "For `frictionmap history`: loads or motions of the base over time.",
     "history": "For `frictionmap history`: friction, start, and what is kept.",
     "spectrum": "For `frictionmap spectrum`: one mass under the records, over its natural period.",
     "units": "Optional: reference values that convert ratios to Hz and N; [grid] may then use these units.",

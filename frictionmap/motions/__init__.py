@@ -8,6 +8,8 @@ baseline       what is taken off the samples of a record
 formats        files of records, one module per format
 quantities     numbers of records that may have units
 formulas       pulses and sweeps
+densities      spectral densities of random loads
+generators     random records of a spectral density
 record         `Record`: a load or a base motion over time
 channels       what a record drives: loads on the masses, walls, normal loads
 scaling        what makes a record dimensionless; friction as a force or as an acceleration
@@ -19,6 +21,7 @@ dataset        `history`: motions in time as labelled variables
 lanes          oscillators with friction under one record, eight at a time
 spectra        `spectrum`: friction response spectra of one mass
 statistics     medians, quantiles and exceedance over records
+table          the table [record] of a configuration
 configuration  the tables [record], [history] and [spectrum] of a configuration
 =============  ================================================================================
 """

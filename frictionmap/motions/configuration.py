@@ -13,8 +13,8 @@ from .. import checks
 from ..errors import InputError
 from ..files.config import checked_table, common_tables, read_tree, within
 from ..model.system import System
-from ..units.scales import Units
 from ..units.quantities import quantities
+from ..units.scales import Units
 from .dataset import history
 from .record import Record
 from .spectra import spectrum

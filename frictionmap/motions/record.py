@@ -1,5 +1,6 @@
 """`Record`: a load or a base motion over time."""
 
+import math
 import os
 import zlib
 from collections.abc import Mapping
@@ -14,11 +15,14 @@ from ..errors import InputError
 from ..model.shown import Shown
 from ..units.table import UNITS, known_unit, units_of
 from .baseline import BASELINES, corrected
+from .densities import density_of
 from .formats.files import Given, read_series
 from .formats.series import Series
 from .formulas import LAWS, Formula, checked_pulse
 from .formulas import pulse as pulse_samples
 from .formulas import sweep as sweep_samples
+from .generators import Noise, random_samples, samples_in, variance
+from .generators import envelope as over_time
 from .pieces import INTERPOLATIONS, Pieces, even_step, interpolated, with_slopes
 from .quantities import angular, frequency_in, number_in, time_in
 
@@ -307,6 +311,87 @@ class Record(Shown):
         return cls._formula_record(made, amplitude, quantity, unit, {"name": "sweep", **more})
 
     @classmethod
+    def generate(
+        cls,
+        kind: str,
+        duration: float | str,
+        dt: float | str,
+        *,
+        seed: int = 0,
+        count: int = 1,
+        level: float | None = None,
+        rms: float | str | None = None,
+        peak: float | str | None = None,
+        envelope: str | Mapping[str, Any] | None = None,
+        quantity: str = "acceleration",
+        unit: str | None = None,
+        interpolation: str | None = None,
+        more: Mapping[str, Any] | None = None,
+        **spectrum: Any,
+    ) -> list["Record"]:
+        """Random records of a spectral density; theory.md, Motions in time.
+
+        Exactly one of `level`, `rms` and `peak` gives their size; a table needs none.
+
+        Parameters
+        ----------
+        kind : {"white", "kanai-tajimi", "clough-penzien", "davenport", "table"}
+            Spectral density.
+        duration : float or str
+            Of a record, to the nearest whole step: in seconds, without a unit in 1/omega_1.
+        dt : float or str
+            Time step.  The highest frequency is 1/(4 dt).
+        seed : int
+            0 to 2^64 - 1.  Record k of a seed is the same for any `count`.
+        count : int
+            Number of records.
+        level : float, optional
+            Factor of the density, which is one-sided, in the squared unit over Hz, without a unit over
+            omega_1: of white noise the density itself, of "kanai-tajimi" and "clough-penzien" that of the
+            bedrock, of "davenport" the square of the friction velocity.
+        rms : float or str, optional
+            Standard deviation of the stationary process, without the envelope.
+        peak : float or str, optional
+            Largest absolute sample of every record.
+        envelope : str or dict, optional
+            "trapezoid" or "jennings"; or a table with `kind` and times: `rise` and `fall` of a trapezoid;
+            `rise`, `end` of the level, and `decay` (1 over time) of Jennings's.
+        quantity, unit, interpolation : str, optional
+            As of `Record`.
+        more : dict, optional
+            Further arguments of `Record`: mass, vector.
+        spectrum
+            "kanai-tajimi": frequency and damping of the soil; "clough-penzien": besides filter_frequency and
+            filter_damping; "davenport": wind_speed in 10 m height [m/s]; "table": frequency and density, two
+            or more values each, straight lines between them, 0 beyond them.
+
+        Raises
+        ------
+        InputError
+            A key is unknown or missing, or a value out of range.
+        """
+        _checked(quantity, unit)
+        how = interpolation or ("cubic" if quantity == "displacement" else "linear")
+        checks.choice(how, "interpolation", INTERPOLATIONS)
+        step = time_in(dt, "dt", unit)
+        length = time_in(duration, "duration", unit)
+        noise = Noise(density_of(kind, spectrum, unit), angular(unit), step, samples_in(length, step), how)
+        checks.whole(seed, "seed", least=0, most=2**64 - 1)
+        checks.whole(count, "count", least=1, most=2**63)
+        size = _size(noise, {"level": level, "rms": rms, "peak": peak}, kind, quantity, unit)
+        times = step * np.arange(noise.size)
+        factor = 1.0 if envelope is None else over_time(envelope, length, unit)(times)
+        found = []
+        for k in range(count):
+            values = size * factor * random_samples(noise, seed, k)
+            record = cls(
+                values, step, quantity=quantity, unit=unit, interpolation=how,
+                **{"name": f"{kind} {k + 1}", "source": f"{kind}, seed {seed}, record {k}", **(more or {})},
+            )  # fmt: skip
+            found.append(record if peak is None else record.scaled_to(peak))
+        return found
+
+    @classmethod
     def _formula_record(
         cls, made: Formula, amplitude: float | str, quantity: str, unit: str | None, more: Mapping[str, Any]
     ) -> "Record":
@@ -380,6 +465,22 @@ def _checked(quantity: str, unit: object) -> None:
     checks.choice(quantity, "quantity", QUANTITIES)
     if unit is not None:
         _unit(unit, quantity)
+
+
+def _size(noise: Noise, sizes: Mapping[str, Any], kind: str, quantity: str, unit: str | None) -> float:
+    """Factor of random samples, of the only size that is given."""
+    given = [key for key, size in sizes.items() if size is not None]
+    if len(given) > 1:
+        raise InputError(
+            "cannot use", given[1], f"with {given[0]}: both are the size of the record; omit one"
+        )
+    if not given and kind != "table":
+        raise InputError("level", "must be given, or rms, or peak; got none of them")
+    if given == ["level"]:
+        return math.sqrt(checks.number(sizes["level"], "level", above=0.0))
+    if given == ["rms"]:
+        return number_in(sizes["rms"], "rms", KINDS[quantity], unit, above=0.0) / math.sqrt(variance(noise))
+    return 1.0
 
 
 def _unit(given: object, quantity: str) -> str:

@@ -125,6 +125,7 @@ __all__ = [
     "regimes",
     "response",
     "shares",
+    "spectrum",
     "sweep",
     "system_in_units",
 ]

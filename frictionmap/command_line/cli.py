@@ -374,8 +374,8 @@ def _follow_records(options: Options, task: "Task", what: str) -> None:
     with claimed(path, options.overwrite, task.files) as output:
         with Progress(what, options.quiet) as progress, listening(progress.compiling):
             ds = task.ask(threads=options.threads, progress=progress)
-            ds.attrs |= {"title": task.title, "config": task.text}
-            output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
+        ds.attrs |= {"title": task.title, "config": task.text}
+        output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
     _report(options, output, task.title, *describe_motions(ds))
 
 

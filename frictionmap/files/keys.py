@@ -569,8 +569,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "natural periods, in the unit of time of the records",
             _SPREAD_TIME,
             example="[1.0]",
-            words='a number, a list or { start, stop, num, spacing }, such as { start = "0.05 s", stop = "4 s", '
-            'num = 200, spacing = "log" }',
+            words="a number, a list or { start, stop, num, spacing }; spacing is linear or log",
         ),
         Key(
             "friction",

@@ -55,23 +55,51 @@ def motions_form(ds: xr.Dataset) -> xr.Dataset:
 
 
 def describe_motions(ds: xr.Dataset) -> list[str]:
-    """Describe motions in a few lines: what the contacts do, peaks, place of rest."""
-    shape = [range(ds.sizes[dim]) for dim in CELL if dim in ds.dims]
-    cells = list(np.ndindex(*[len(one) for one in shape]))
-    lines = []
-    for cell in cells[:_MOST_LINES]:
-        one = ds.isel(dict(zip([dim for dim in CELL if dim in ds.dims], cell, strict=True)))
-        lines += [*_heading(one, len(cells)), *(f"{name:<{_WIDTH}} {text}" for name, text in _rows(one))]
+    """Describe motions: one in a few lines, several in one line each, a spectrum by ranges."""
+    if "period" in ds.dims:
+        return list(_ranges(ds))
+    cells = list(np.ndindex(*(ds.sizes[dim] for dim in CELL)))
+    motions = [ds.isel(dict(zip(CELL, cell, strict=True))) for cell in cells[:_MOST_LINES]]
+    if len(cells) == 1:
+        return [f"{name:<{_WIDTH}} {text}" for name, text in _rows(motions[0])]
+    lines = [f"{_heading(one):<{_WIDTH}} {_in_short(one)}" for one in motions]
     if len(cells) > _MOST_LINES:
         lines.append(f"... and {len(cells) - _MOST_LINES} further motions")
     return lines
 
 
-def _heading(one: xr.Dataset, count: int) -> list[str]:
-    if count == 1:
-        return []
-    name = str(one["record_name"].values) if "record_name" in one.coords else f"record {int(one['record'])}"
-    return [f"{name}, scale {float(one['scale']):g}, mu {float(one['mu']):g}, beta {float(one['beta']):g}"]
+def _heading(one: xr.Dataset) -> str:
+    """The record, its factor, and the friction of one of several motions."""
+    words = [str(one["record_name"].values)]
+    for name, unusual in (("scale", 1.0), ("mu", 1.0)):
+        if float(one[name]) != unusual:
+            words.append(f"{name} {float(one[name]):g}")
+    return f"{', '.join(words)}, beta {float(one['beta']):.4g}"
+
+
+def _in_short(one: xr.Dataset) -> str:
+    words = [f"largest displacement {_measured(one, 'amplitude', 'length', 'm')}"]
+    words += [f"{name} {_listed(one[name].values)}" for name in ("stops", "slips") if name in one]
+    if np.isfinite(one["residual"].values).any():
+        words.append(f"rests at {_measured(one, 'residual', 'length', 'm')}")
+    code = STATUSES[int(one["status"])]
+    return "; ".join([*words, *([code.name] if code.value else [])])
+
+
+def _ranges(ds: xr.Dataset) -> Iterator[str]:
+    """Least, median and largest value of every variable."""
+    for name, variable in ds.data_vars.items():
+        values = variable.values[np.isfinite(variable.values)]
+        if name == "status" or not values.size:
+            continue
+        unit = str(variable.attrs.get("units", "1")).replace(" s-2", "/s2")
+        text = " ... ".join(f"{q:.4g}" for q in np.quantile(values, [0.0, 0.5, 1.0]))
+        meaning = str(variable.attrs.get("long_name", name))
+        yield f"{meaning:<{_WIDTH + 6}} {text} {'' if unit == '1' else unit}".rstrip()
+    for code in STATUSES[1:]:
+        count = int((ds["status"].values == code.value).sum())
+        if count:
+            yield f"{count:,} motions {code.name}: {code.meaning}"
 
 
 def _listed(values: Any, unit: str = "") -> str:

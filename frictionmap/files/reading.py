@@ -206,7 +206,7 @@ def _load(
     in_store = MARKS in ds
     with naming(f"file {path}"):
         several = "contact" not in at and ds.sizes.get("contact", 0) > 1
-        if several and not contacts:
+        if several and not contacts and not is_own(kind(ds)):
             ds, several = ds.drop_dims("contact"), False
         if at or further_axes(ds):
             ds = choose(ds, at, "contact" if several else None)

@@ -8,10 +8,13 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
+from ..datasets.labels import REFERENCES
+from ..datasets.provenance import now
 from ..errors import InputError
 from ..jobs import Progress, Watch, run_jobs
 from ..units.quantities import quantities
 from ..units.table import UNITS
+from ..version import __version__
 from .lanes import Driven, Oscillators, Responses, driven, follow, in_lanes, parts_of
 from .pieces import Pieces, derivative
 from .record import Record
@@ -182,7 +185,12 @@ def spectrum(
         _friction(friction, listed), checks.number(damping, "damping", least=0.0),
     )  # fmt: skip
     checks.cells(grid.mu.size, grid.period.size, grid.friction.size, points=len(listed) * grid.scale.size)
-    return _labelled(grid, _followed(grid, checks.threads(threads), progress, watch))
+    ds = _labelled(grid, _followed(grid, checks.threads(threads), progress, watch))
+    return ds.assign_attrs({
+        "Conventions": "CF-1.11", "title": "Friction response spectra",
+        "source": f"frictionmap {__version__}",
+        "references": REFERENCES, "history": f"{now()} frictionmap.spectrum",
+    })  # fmt: skip
 
 
 def _oscillators(grid: Grid) -> tuple[Oscillators, np.ndarray]:

@@ -64,10 +64,22 @@ def records_of(table: Mapping[str, Any], folder: Path) -> tuple[tuple[Record, ..
     for key in beside:
         if key not in _BESIDE[source]:
             raise InputError("cannot use", key, f"with {source}: it does not apply to it; omit it")
+    if "unit" not in beside and source in ("pulse", "sweep", "generate"):
+        beside |= _unit_of(table[source], table)
     found, files = _SOURCES[source](table[source], beside, folder)
     if "peak" in table:
         found = [record.scaled_to(table["peak"]) for record in found]
     return tuple(found), files
+
+
+def _unit_of(source: Any, table: Mapping[str, Any]) -> dict[str, str]:
+    """The unit of a size that has one, such as that of peak = "0.4 g"."""
+    given = {**table, **source} if isinstance(source, Mapping) else table
+    for key in ("amplitude", "rms", "peak"):
+        words = str(given.get(key, "")).split()
+        if isinstance(given.get(key), str) and len(words) == 2:
+            return {"unit": words[1]}
+    return {}
 
 
 _Found = tuple[list[Record], tuple[Path, ...]]

@@ -25,6 +25,7 @@ from .pictures.maps.regime_map import plot_regimes
 from .pictures.maps.share_map import plot_shares
 from .pictures.motions.animation import animate
 from .pictures.motions.history import plot_response
+from .pictures.motions.in_time import plot_history, plot_spectrum
 from .pictures.motions.orbit import plot_orbit
 from .pictures.options import FigureOptions
 from .pictures.styles import settings_of, written
@@ -44,11 +45,13 @@ __all__ = [
     "plot_design",
     "plot_fit",
     "plot_forces",
+    "plot_history",
     "plot_orbit",
     "plot_quantity",
     "plot_regimes",
     "plot_response",
     "plot_shares",
+    "plot_spectrum",
     "save_picture",
 ]
 
@@ -116,6 +119,8 @@ def draw(
         "estimates": {"fit": plot_fit},
         "shares": {"shares": plot_shares},
         "design": {"design": plot_design},
+        "history": {"history": plot_history},
+        "spectrum": {"spectrum": plot_spectrum},
     }
     valid = drawn_of[what]
     if log:

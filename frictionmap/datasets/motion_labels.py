@@ -64,6 +64,7 @@ MOTIONS = {
     "friction": _real(f"friction force against the motion in the contact, {_F}", "time"),
     "direction": Label(np.int8, "direction of the motion in the contact", (*CELL, "time"), _SENSES),
     "y": _real(f"displacement of the slider of an elastic contact, {_X}", "time"),
+    "drive": _real("the record: a force over P, or the acceleration of the base over omega_1^2 P/k1", "time"),
     "event_time": _real("time of the event, over 1/omega_1", "event", comment="padded with NaN"),
     "event_contact": Label(
         np.int64, "contact that the event is of, counted from 1; 0: none", (*CELL, "event"), least=0

@@ -323,6 +323,7 @@ def _traces(structure: Structure, motions: Motions, one: Found) -> dict[str, np.
         "time": states[0], "x": values[places["x"]], "v": structure.modal.phi @ columns[m : 2 * m],
         "acceleration": values[places["acceleration"]], "z": z, "friction": f,
         "direction": one.kept.senses[: one.kept.counts[1]].T, "y": slider,
+        "drive": columns[2 * m + contacts],
     }  # fmt: skip
 
 
@@ -378,7 +379,7 @@ def _labelled(structure: Structure, grid: Grid, asked: Asked, followed: Followed
         traces = [_traces(structure, motions, one) for motions, one in ones]
         longest = max(traces, key=lambda trace: trace["time"].size)
         coords["time"] = xr.Variable("time", longest["time"], attributes(MOTIONS["time"]))
-        for name in ("x", "v", "acceleration", "z", "friction", "direction", "y"):
+        for name in ("x", "v", "acceleration", "z", "friction", "direction", "y", "drive"):
             if name == "y" and not elastic.any():
                 continue
             fill = 0.0 if name == "direction" else np.nan

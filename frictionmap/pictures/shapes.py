@@ -20,6 +20,8 @@ _MAKERS = {
     "estimates": "the functions of identify return, over parameter",
     "shares": "shares returns, over outcome, mu, r and beta",
     "design": "the functions of design return",
+    "history": "history returns, over record, scale, mu and beta",
+    "spectrum": "spectrum returns, over period",
 }
 _DRAWN_BY = {
     "map": "plot_regimes",
@@ -29,6 +31,8 @@ _DRAWN_BY = {
     "estimates": "plot_fit",
     "shares": "plot_shares",
     "design": "plot_design",
+    "history": "plot_history",
+    "spectrum": "plot_spectrum",
 }
 
 #: Options that only some functions take.

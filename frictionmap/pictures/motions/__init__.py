@@ -1,4 +1,4 @@
-"""Pictures of one steady state.
+"""Pictures of one steady state, and of motions under records.
 
 =========  ===========================================================
 module     what is in it
@@ -6,6 +6,7 @@ module     what is in it
 traces     motion, stops and friction levels of every contact
 loops      friction over the motion in the contacts
 history    motion, friction force and events in time
+in_time    motions under records; friction response spectra
 orbit      phase portrait, friction loop, harmonics
 animation  moving picture: masses, lights of stuck contacts, loop
 =========  ===========================================================

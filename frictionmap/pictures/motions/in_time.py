@@ -1,0 +1,208 @@
+"""Pictures of motions in time under records, and of friction response spectra."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Unpack
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ...datasets.motion_labels import CELL
+from ...errors import InputError
+from ..drawing import with_options
+from ..options import FigureOptions
+from ..palette import CLASSES, LINES, STUCK
+from ..panels import Handle, given_axes, legend_below, new_figure, title_figure
+from ..shapes import check_holds, to_draw
+
+if TYPE_CHECKING:
+    from ..panels import AxesArray
+
+#: Size of the panels over time, and of the one over friction or period [inch].
+_WIDE, _HIGH = 7.4, 2.0
+_WIDTH, _HEIGHT = 5.6, 4.0
+
+#: Lines of single records, behind their median.
+_FAINT = {"linewidth": 0.7, "alpha": 0.35}
+
+#: Friction values that spectra have a colour for.
+_MOST_LINES = len(LINES)
+
+
+def _beside(ds: xr.Dataset, name: str, suffix: str, unit: str) -> tuple[np.ndarray, str]:
+    """Values of a variable in SI units where they are there, and the unit in brackets."""
+    in_si = f"{name}_{suffix}"
+    return (ds[in_si].values, f" [{unit}]") if in_si in ds else (ds[name].values, "")
+
+
+def _by_rows(values: np.ndarray) -> np.ndarray:
+    return values.reshape(-1, values.shape[-1])
+
+
+def _shade_stops(ax: Axes, time: np.ndarray, directions: np.ndarray) -> None:
+    """Shade the times in which all contacts stick."""
+    stuck = (directions == 0).all(axis=0)
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], stuck, [False])).astype(int)))
+    for begin, end in edges.reshape(-1, 2):
+        last = min(end, time.size - 1)
+        ax.axvspan(time[begin], time[last], color=CLASSES[STUCK].colour, alpha=0.35, linewidth=0.0)
+
+
+def _draw_rows(ax: Axes, time: np.ndarray, values: np.ndarray, words: str) -> list[Handle]:
+    """Draw a line for every mass or contact; return legend entries where there are several."""
+    rows = _by_rows(values)
+    for k, row in enumerate(rows):
+        ax.plot(time, row, color=LINES[k % len(LINES)], linewidth=1.1)
+    if len(rows) == 1:
+        return []
+    return [Line2D([], [], color=LINES[k % len(LINES)], label=f"{words} {k + 1}") for k in range(len(rows))]
+
+
+def _draw_traces(axes: "AxesArray", ds: xr.Dataset) -> list[Handle]:
+    """Draw the record, the masses, and the forces in the contacts."""
+    time = ds["time"].values
+    unit = " [s]" if ds["time"].attrs.get("units") == "s" else r" [1/$\omega_1$]"
+    drive = ds["drive"].values
+    axes[0].plot(time, drive, color="black", linewidth=0.8)
+    axes[0].set_ylabel("record")
+    x, length = _beside(ds, "x", "m", "m")
+    handles = _draw_rows(axes[1], time, x, "mass")
+    axes[1].set_ylabel(f"displacement{length}")
+    force, newton = _beside(ds, "friction", "N", "N")
+    handles += _draw_rows(axes[2], time, force, "contact")
+    axes[2].set_ylabel(f"contact force{newton}")
+    axes[2].set_xlabel(f"time{unit}")
+    for ax in axes:
+        ax.margins(x=0.0)
+        _shade_stops(ax, time, _by_rows(ds["direction"].values))
+    return [*handles, Patch(color=CLASSES[STUCK].colour, alpha=0.35, label="all contacts stick")]
+
+
+@with_options
+def plot_history(
+    ds: xr.Dataset,
+    ax: "Axes | Sequence[Axes] | AxesArray | None" = None,
+    **options: Unpack[FigureOptions],
+) -> "AxesArray":
+    """Draw a motion in time under its record; of several motions the largest displacement over friction.
+
+    Times in which all contacts stick are shaded.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `history`; one motion needs its samples.
+    ax : axes of matplotlib, optional
+        Three for one motion: record, masses, forces in the contacts.  Else one.
+
+    Returns
+    -------
+    An array of the axes.
+
+    Raises
+    ------
+    InputError
+        The dataset is no history or lacks a variable to draw, or the number of axes is wrong.
+    """
+    ds = to_draw(ds, "plot_history", "history")
+    single = all(ds.sizes[dim] == 1 for dim in CELL) and "time" in ds.dims
+    if single:
+        check_holds(ds, ("x", "friction", "direction", "drive"), "its motion")
+    elif ds.sizes["beta"] == 1:
+        raise InputError(
+            "cannot draw several motions with one friction: choose one, such as ds.isel(record=[0]), or give "
+            "several values of beta"
+        )
+    count = 3 if single else 1
+    if ax is None:
+        size = (_WIDE, _HIGH * count) if single else (_WIDTH, _HEIGHT)
+        axes = new_figure(*size).subplots(count, 1, sharex=True, squeeze=False).ravel()
+    else:
+        axes = given_axes(ax, count, "for a history")
+    one = ds.squeeze(list(CELL)) if single else ds
+    handles = _draw_traces(axes, one) if single else _draw_peaks(axes[0], ds)
+    if ax is None:
+        title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
+        legend_below(axes[0].figure, handles, "")
+    return axes
+
+
+def _draw_peaks(ax: Axes, ds: xr.Dataset) -> list[Handle]:
+    """Draw the largest displacement of the last mass over friction: every record, and their median."""
+    values, unit = _beside(ds, "amplitude", "m", "m")
+    peaks = values[..., -1].reshape(-1, *values.shape[2:-1])  # records and scales, mu, beta
+    beta = ds["beta"].values
+    handles: list[Handle] = []
+    for k, mu in enumerate(ds["mu"].values):
+        colour = LINES[k % len(LINES)]
+        if len(peaks) > 1:
+            ax.plot(beta, peaks[:, k].T, color=colour, **_FAINT)
+        ax.plot(beta, np.median(peaks[:, k], axis=0), color=colour, linewidth=1.8)
+        handles.append(Line2D([], [], color=colour, label=rf"$\mu = {mu:g}$" + ", median" * (len(peaks) > 1)))
+    ax.set_xlabel(r"friction ratio $\beta$")
+    ax.set_ylabel(f"largest displacement{unit}")
+    ax.set_ylim(bottom=0.0)
+    return handles
+
+
+@with_options
+def plot_spectrum(
+    ds: xr.Dataset,
+    ax: "Axes | None" = None,
+    **options: Unpack[FigureOptions],
+) -> "AxesArray":
+    """Draw friction response spectra: largest displacement over the natural period.
+
+    There is a line for every friction, the median over records, and a band between their quartiles.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `spectrum`, at one mu and one scale.
+    ax : axes of matplotlib, optional
+
+    Returns
+    -------
+    An array of the axes.
+
+    Raises
+    ------
+    InputError
+        The dataset is no spectrum, or has more than one mu or scale, or too many values of friction.
+    """
+    ds = to_draw(ds, "plot_spectrum", "spectrum")
+    name = next((one for one in ("amplitude", "acceleration_amplitude") if one in ds), None)
+    if name is None:
+        raise InputError("ds must hold amplitude or acceleration_amplitude to be drawn; got neither")
+    ds = ds.isel({dim: [0] for dim in ("mu", "scale")})
+    beta = ds["beta"].values
+    chosen = np.unique(np.linspace(0, beta.size - 1, min(beta.size, _MOST_LINES)).round().astype(int))
+    axes = (
+        new_figure(_WIDTH, _HEIGHT).subplots(1, 1, squeeze=False).ravel()
+        if ax is None
+        else given_axes(ax, 1, "")
+    )
+    values = ds[name].isel(scale=0, mu=0).transpose("record", "period", "beta").values
+    period = ds["period"].values
+    handles: list[Handle] = []
+    for k, b in enumerate(chosen):
+        low, middle, high = np.quantile(values[:, :, b], [0.25, 0.5, 0.75], axis=0)
+        axes[0].plot(period, middle, color=LINES[k], linewidth=1.6)
+        if len(values) > 1:
+            axes[0].fill_between(period, low, high, color=LINES[k], alpha=0.15, linewidth=0.0)
+        unit = str(ds["beta"].attrs.get("units", "1")).replace("m s-2", "m/s²").replace("1", "")
+        handles.append(Line2D([], [], color=LINES[k], label=f"friction {beta[b]:.3g} {unit}".rstrip()))
+    if period.size > 1 and period[0] > 0.0 and period[-1] / period[0] > 20.0 and np.isfinite(period[-1]):
+        axes[0].set_xscale("log")
+    axes[0].set_xlabel("natural period" + (" [s]" if ds["period"].attrs.get("units") == "s" else ""))
+    meaning = str(ds[name].attrs.get("long_name", name))
+    unit = str(ds[name].attrs.get("units", "1"))
+    axes[0].set_ylabel(meaning + ("" if unit == "1" else f" [{unit.replace(' s-2', '/s²')}]"))
+    axes[0].set_ylim(bottom=0.0)
+    if ax is None:
+        title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
+        caption = "median of the records, with their quartiles" if len(values) > 1 else ""
+        legend_below(axes[0].figure, handles, caption)
+    return axes

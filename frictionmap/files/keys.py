@@ -236,21 +236,25 @@ def _quantity_of_time(kind: str) -> Schema:
     return either(number(), with_unit(kind))
 
 
-def _record_keys() -> tuple[Key, ...]:
-    """Keys of [record]: a source, and what is said of it."""
-    size = either(number(), *(with_unit(kind) for kind in ("force", "acceleration", "velocity", "length")))
+#: A value of a record, with or without a unit.
+_SIZE = either(number(), *(with_unit(kind) for kind in ("force", "acceleration", "velocity", "length")))
+
+
+def _record_sources() -> tuple[Key, ...]:
+    """Keys of [record] that say where records come from."""
     time, frequency = _quantity_of_time("time"), _quantity_of_time("frequency")
     pulse = {
-        "kind": word("rectangle", "triangle", "half-sine", "ricker"), "amplitude": size, "duration": time,
+        "kind": word("rectangle", "triangle", "half-sine", "ricker"), "amplitude": _SIZE, "duration": time,
         "rise": number(least=0.0, most=1.0),
     }  # fmt: skip
     swept = {
-        "from": frequency, "to": frequency, "duration": time, "law": word("linear", "log"), "amplitude": size,
+        "from": frequency, "to": frequency, "duration": time, "law": word("linear", "log"),
+        "amplitude": _SIZE,
     }  # fmt: skip
     made = {
         "kind": word("white", "kanai-tajimi", "clough-penzien", "davenport", "table"), "duration": time,
-        "dt": time, "seed": whole(least=0), "count": whole(least=1), "level": number(above=0.0), "rms": size,
-        "peak": size, "envelope": either(word("trapezoid", "jennings"), {"type": "object"}),
+        "dt": time, "seed": whole(least=0), "count": whole(least=1), "level": number(above=0.0), "rms": _SIZE,
+        "peak": _SIZE, "envelope": either(word("trapezoid", "jennings"), {"type": "object"}),
         "frequency": either(frequency, several(frequency, 2)), "damping": number(above=0.0),
         "filter_frequency": frequency, "filter_damping": number(above=0.0),
         "wind_speed": either(number(), with_unit("velocity")), "density": several(number(least=0.0), 2),
@@ -285,6 +289,13 @@ def _record_keys() -> tuple[Key, ...]:
             example='{ kind = "white", duration = 100.0, dt = 0.05, rms = 1.0, seed = 1, count = 20 }',
             words="{ kind, duration, dt, seed, count, level or rms or peak, envelope, keys of the kind }",
         ),
+    )
+
+
+def _record_keys() -> tuple[Key, ...]:
+    """Keys of [record]: a source, and what is said of it."""
+    return (
+        *_record_sources(),
         Key(
             "quantity",
             "of the base, or a force; default: by column or format, else acceleration",
@@ -323,7 +334,7 @@ def _record_keys() -> tuple[Key, ...]:
         Key(
             "peak",
             "largest absolute value that every record is scaled to",
-            size,
+            _SIZE,
             example='"0.4 g"',
             words='a number, or with a unit, such as "0.4 g"',
         ),

@@ -319,15 +319,10 @@ class Record(Shown):
         *,
         seed: int = 0,
         count: int = 1,
-        level: float | None = None,
-        rms: float | str | None = None,
-        peak: float | str | None = None,
-        envelope: str | Mapping[str, Any] | None = None,
         quantity: str = "acceleration",
         unit: str | None = None,
         interpolation: str | None = None,
-        more: Mapping[str, Any] | None = None,
-        **spectrum: Any,
+        **more: Any,
     ) -> list["Record"]:
         """Random records of a spectral density; theory.md, Motions in time.
 
@@ -345,25 +340,24 @@ class Record(Shown):
             0 to 2^64 - 1.  Record k of a seed is the same for any `count`.
         count : int
             Number of records.
-        level : float, optional
+        quantity, unit, interpolation : str, optional
+            As of `Record`.
+        level : float
             Factor of the density, which is one-sided, in the squared unit over Hz, without a unit over
             omega_1: of white noise the density itself, of "kanai-tajimi" and "clough-penzien" that of the
             bedrock, of "davenport" the square of the friction velocity.
-        rms : float or str, optional
+        rms : float or str
             Standard deviation of the stationary process, without the envelope.
-        peak : float or str, optional
+        peak : float or str
             Largest absolute sample of every record.
         envelope : str or dict, optional
             "trapezoid" or "jennings"; or a table with `kind` and times: `rise` and `fall` of a trapezoid;
             `rise`, `end` of the level, and `decay` (1 over time) of Jennings's.
-        quantity, unit, interpolation : str, optional
-            As of `Record`.
-        more : dict, optional
-            Further arguments of `Record`: mass, vector.
-        spectrum
-            "kanai-tajimi": frequency and damping of the soil; "clough-penzien": besides filter_frequency and
-            filter_damping; "davenport": wind_speed in 10 m height [m/s]; "table": frequency and density, two
-            or more values each, straight lines between them, 0 beyond them.
+        more
+            Keys of the kind: frequency and damping of the soil of "kanai-tajimi"; besides filter_frequency
+            and filter_damping of "clough-penzien"; wind_speed in 10 m height [m/s] of "davenport"; frequency
+            and density of "table", two or more values each, straight lines between them, 0 beyond them.
+            And mass, vector, scale of `Record`.
 
         Raises
         ------
@@ -375,21 +369,24 @@ class Record(Shown):
         checks.choice(how, "interpolation", INTERPOLATIONS)
         step = time_in(dt, "dt", unit)
         length = time_in(duration, "duration", unit)
-        noise = Noise(density_of(kind, spectrum, unit), angular(unit), step, samples_in(length, step), how)
+        size = {key: more.pop(key, None) for key in ("level", "rms", "peak")}
+        shape = more.pop("envelope", None)
+        others = {key: more.pop(key) for key in ("mass", "vector", "scale") if key in more}
+        noise = Noise(density_of(kind, more, unit), angular(unit), step, samples_in(length, step), how)
         checks.whole(seed, "seed", least=0, most=2**64 - 1)
         checks.whole(count, "count", least=1, most=2**63)
-        size = _size(noise, {"level": level, "rms": rms, "peak": peak}, kind, quantity, unit)
-        times = step * np.arange(noise.size)
-        factor = 1.0 if envelope is None else over_time(envelope, length, unit)(times)
-        found = []
-        for k in range(count):
-            values = size * factor * random_samples(noise, seed, k)
-            record = cls(
-                values, step, quantity=quantity, unit=unit, interpolation=how,
-                **{"name": f"{kind} {k + 1}", "source": f"{kind}, seed {seed}, record {k}", **(more or {})},
-            )  # fmt: skip
-            found.append(record if peak is None else record.scaled_to(peak))
-        return found
+        factor = np.full(noise.size, _size(noise, size, kind, quantity, unit))
+        if shape is not None:
+            factor *= over_time(shape, length, unit)(step * np.arange(noise.size))
+        found = [
+            cls(
+                factor * random_samples(noise, seed, k), step, quantity=quantity, unit=unit,
+                interpolation=how, name=f"{kind} {k + 1}", source=f"{kind}, seed {seed}, record {k}",
+                **others,
+            )
+            for k in range(count)
+        ]  # fmt: skip
+        return found if size["peak"] is None else [record.scaled_to(size["peak"]) for record in found]
 
     @classmethod
     def _formula_record(

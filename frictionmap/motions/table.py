@@ -128,9 +128,7 @@ def _sweep(given: Any, beside: Mapping[str, Any], _folder: Path) -> _Found:
 
 def _generate(given: Any, beside: Mapping[str, Any], _folder: Path) -> _Found:
     arguments = _arguments(given, "generate", _OF_GENERATE, ("kind", "duration", "dt"))
-    more = {key: value for key, value in beside.items() if key in ("mass", "vector")}
-    others = {key: value for key, value in beside.items() if key not in more}
-    return _named("generate", {}, Record.generate, arguments, {**others, "more": more}), ()
+    return _named("generate", {}, Record.generate, arguments, beside), ()
 
 
 _SOURCES: dict[str, Callable[[Any, Mapping[str, Any], Path], _Found]] = {

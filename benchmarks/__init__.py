@@ -3,8 +3,8 @@
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
 NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, design, static, bound,
-large, explore, first_minute, coupling, coverage or consistency: each is a module of that name in
-`measures`.  It prints tables, and writes JSON and perhaps a figure.
+large, explore, first_minute, coupling, coverage, consistency or spectrum: each is a module of that name
+in `measures`.  It prints tables, and writes JSON and perhaps a figure.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
@@ -30,6 +30,7 @@ large, explore, first_minute, coupling, coverage or consistency: each is a modul
   coupling                     error if the coupling of modes by damping is neglected
   coverage                     how often the 95 % intervals of `identify` contain the true value
   consistency                  what every map of several contacts must fulfil, in random cells
+  spectrum                     friction response spectra: a sample, an event, a whole spectrum
 `peers/`                       other solvers: each for one mass and for chains of masses
   solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: many cells at a time
   fixed_step                   time stepping: RK4 with sticking logic, Moreau-Jean

@@ -35,6 +35,7 @@ BENCHMARKS = (
     "coupling",
     "coverage",
     "consistency",
+    "spectrum",
 )
 
 

@@ -12,9 +12,6 @@ from .spectrum_lanes import (
     BETA,
     DAMPING,
     FORCE,
-    FOURTH_A,
-    FOURTH_D,
-    FOURTH_V,
     OLD_ACC,
     OLD_PEAK,
     OLD_V,
@@ -53,20 +50,6 @@ def _put(lanes, cells):
 
 
 @kernel
-def _may_peak(record, lanes, i, k):
-    """Whether the acceleration of lane i may have an extremum within sample k, which has no event."""
-    state, table, h = lanes.state, lanes.tables[record.which[k]], record.steps[k]
-    rise = record.ends[k] - record.begins[k]
-    v, acc = state[OLD_V, i], state[OLD_ACC, i]
-    bound = table[FOURTH_V, i] * abs(v) + table[FOURTH_A, i] * abs(acc) + table[FOURTH_D, i] * abs(rise)
-    load = 0.0 if record.base else rise / h
-    before = state[DAMPING, i] * acc + state[SQUARE, i] * v - load
-    after = state[DAMPING, i] * state[ACC, i] + state[SQUARE, i] * state[V, i] - load
-    # between its ends the slope leaves its chord by h^2/8 times its second derivative, which `bound` has
-    return before * after <= 0.0 or min(abs(before), abs(after)) <= bound * 48.0 / (h * h)
-
-
-@kernel
 def _follow_curved(record, lanes, k):
     """Follow all lanes through a sample in which the load is curved."""
     state = lanes.state
@@ -84,11 +67,11 @@ def _follow_straight(record, lanes):
     """Follow all lanes through a record of straight lines."""
     k = 0
     while True:
-        k, events, peaks = pass_quiet(record, lanes, k)
+        k, found = pass_quiet(record, lanes, k)
         if k == record.ends.size:
             return
         for i in range(LANES):
-            if events >> i & 1 or (peaks >> i & 1 and _may_peak(record, lanes, i, k)):
+            if found >> i & 1:
                 follow_sample(record, lanes, i, k)
         k += 1
 

@@ -154,6 +154,19 @@ def fill_tables(lanes, lengths, curved):
 
 
 @inner_kernel
+def _may_turn(before, after, fourth, third):
+    """Lanes, as bits, whose acceleration may have an extremum within a sample.
+
+    Between its ends the slope of the acceleration leaves its chord by h^2/8 times a bound at most.
+    before, after : that slope at both ends
+    fourth, third : h^4/384 times the bound; h/3
+    """
+    farthest = fourth * (16.0 / (3.0 * third * third))  # 48/h^2
+    slower = least(magnitude(before), magnitude(after))
+    return _ALL & ~(mask_above(before * after, 0.0) & mask_above(slower, farthest))
+
+
+@inner_kernel
 def pass_quiet(record, lanes, first):
     """Follow all lanes through samples without events, from sample `first` on.
 
@@ -164,9 +177,9 @@ def pass_quiet(record, lanes, first):
 
     Returns
     -------
-    (k, events, peaks) : the sample that is not quiet, or their number; the lanes, as bits, that may have an
-        event in it, and those whose acceleration may have a peak within it.  `lanes.state` is that after the
-        sample, which is not true for these lanes, and the rows OLD_X to OLD_PEAK are those before it.
+    (k, lanes) : the sample that is not quiet, or their number; the lanes, as bits, that may have an event in
+        it, or a peak of the acceleration within it.  `lanes.state` is that after the sample, which is not true
+        for these lanes, and the rows OLD_X to OLD_PEAK are those before it.
     """
     state, tables = lanes.state, lanes.tables
     x, v, acc = load(state, X * LANES), load(state, V * LANES), load(state, ACC * LANES)
@@ -207,13 +220,17 @@ def pass_quiet(record, lanes, first):
         second = (speed * load(tables, at + SECOND_V * LANES) + pace * load(tables, at + SECOND_A * LANES)
                   + load(tables, at + SECOND_D * LANES) * change)  # fmt: skip
         peaks = mask_above(ends + second, new_peak) & ~rests
+        if peaks != 0:
+            slope = 0.0 if record.base else rise / record.steps[k]
+            before = acc * damping + v * square - slope
+            peaks &= _may_turn(before, new_acc * damping + new_v * square - slope, fourth, third)
         if events | peaks != 0:
             _store_old(state, x, v, acc, peak)
             _store_new(state, new_x, new_v, new_acc, new_a, new_peak)
-            return k, events, peaks & ~events
+            return k, events | peaks
         x, v, acc, a, peak, ahead = new_x, new_v, new_acc, new_a, new_peak, new_ahead
     _store_new(state, x, v, acc, a, peak)
-    return record.ends.size, 0, 0
+    return record.ends.size, 0
 
 
 @kernel

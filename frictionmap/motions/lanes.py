@@ -8,12 +8,13 @@ import numpy as np
 from .._kernels.compiler.vectors import LANES
 from .._kernels.general.problem import PIECE_TERMS
 from .._kernels.history.motion import CREEPING, RESOLVED
-from .._kernels.history.spectrum import follow_lanes
+from .._kernels.history.spectrum import follow_lanes, rest_lanes
 from .._kernels.history.spectrum_lanes import (
     ASLEEP,
     DISTANCE,
     PEAK,
     REACH,
+    STATE_ROWS,
     STATUS,
     STOPS,
     TURN,
@@ -21,10 +22,17 @@ from .._kernels.history.spectrum_lanes import (
     Load,
     X,
 )
+from ..errors import InputError
 from .pieces import Pieces
 
 #: A value and the one before it differ by no more than this share of the largest where nothing jumps.
 _ROUNDING = 1e-13
+
+#: Parts of samples in a block, of 88 bytes each.
+_BLOCK = 10**6
+
+#: Parts of a sample at most, for oscillators with a period far below its length.
+_MOST_PARTS = 10**6
 
 #: Friction that nothing overcomes, in lanes without an oscillator, and with a load of zero.
 _HOLDS = 1e150
@@ -42,9 +50,17 @@ class Oscillators(NamedTuple):
 class Driven(NamedTuple):
     """A record in equal parts of its samples."""
 
-    load: Load
-    lengths: np.ndarray  # distinct lengths of the parts
-    duration: float
+    pieces: Pieces
+    ends: np.ndarray  # (K,) values at the ends of the samples, without jumps of rounding
+    jumps: np.ndarray  # (K,) bool: whether it jumps where the sample begins
+    parts: int
+    base: bool
+    kept: list[Load]  # the whole of it, where that is small
+
+    @property
+    def lengths(self) -> np.ndarray:
+        """Distinct lengths of the parts."""
+        return np.unique(self.pieces.steps) / self.parts
 
 
 class Responses(NamedTuple):
@@ -60,36 +76,65 @@ class Responses(NamedTuple):
     status: np.ndarray
 
 
-def _split(pieces: Pieces, parts: int) -> tuple[np.ndarray, np.ndarray]:
-    """Polynomials over equal parts of the intervals, and the lengths of the parts."""
-    begin = np.tile(np.arange(parts) / parts, pieces.steps.size)[:, np.newaxis]
-    terms = np.repeat(pieces.terms, parts, axis=0)
-    for i in range(PIECE_TERMS - 1):
-        for k in range(PIECE_TERMS - 2, i - 1, -1):
-            terms[:, k] += begin[:, 0] * terms[:, k + 1]
-    return terms / float(parts) ** np.arange(PIECE_TERMS), np.repeat(pieces.steps / parts, parts)
-
-
 def driven(pieces: Pieces, parts: int, base: bool) -> Driven:
-    """Arrays of a load in `parts` equal parts of every sample; base : see `Load`."""
-    terms, steps = _split(pieces, parts)
-    begins, ends = terms[:, 0].copy(), terms.sum(axis=1)
+    """A load in `parts` equal parts of every sample; base : see `Load`."""
+    begins, ends = pieces.terms[:, 0], pieces.ends
     joined = np.abs(begins[1:] - ends[:-1]) <= _ROUNDING * max(np.abs(begins).max(), np.abs(ends).max())
     ends[:-1][joined] = begins[1:][joined]
-    curved = bool(terms[:, 2:].any())
+    drive = Driven(pieces, ends, np.concatenate(([True], ~joined)), parts, base, [])
+    if parts * ends.size <= _BLOCK:
+        drive.kept.append(_block(drive, 0, ends.size))
+    return drive
+
+
+def _shifted(terms: np.ndarray, parts: int) -> np.ndarray:
+    """Polynomials over equal parts of the intervals."""
+    begin = np.tile(np.arange(parts) / parts, len(terms))
+    terms = np.repeat(terms, parts, axis=0)
+    for i in range(PIECE_TERMS - 1):
+        for k in range(PIECE_TERMS - 2, i - 1, -1):
+            terms[:, k] += begin * terms[:, k + 1]
+    return terms / float(parts) ** np.arange(PIECE_TERMS)
+
+
+def _block(drive: Driven, first: int, last: int) -> Load:
+    """The load over the samples from `first` to before `last`."""
+    parts, pieces = drive.parts, drive.pieces
+    terms = _shifted(pieces.terms[first:last], parts)
+    begins = terms[:, 0].copy()
+    ends = np.append(begins[1:], 0.0)
+    ends[parts - 1 :: parts] = drive.ends[first:last]
+    jumps = np.zeros(begins.size, dtype=bool)
+    jumps[::parts] = drive.jumps[first:last]
+    curved = bool(pieces.terms[:, 2:].any())
     if not curved:
         terms[:, 1] = ends - begins
-    lengths, which = np.unique(steps, return_inverse=True)
-    jumps = np.concatenate(([True], ~joined))
-    load = Load(begins, ends, steps, which.astype(np.int64), jumps, np.ascontiguousarray(terms), curved, base)
-    return Driven(load, lengths, float(pieces.times[-1]))
+    which = np.searchsorted(np.unique(pieces.steps), pieces.steps[first:last]).astype(np.int64)
+    steps = np.repeat(pieces.steps[first:last] / parts, parts)
+    return Load(
+        begins, ends, steps, np.repeat(which, parts), jumps, np.ascontiguousarray(terms), curved, drive.base
+    )
+
+
+def _blocks(drive: Driven) -> Iterator[Load]:
+    """The load in blocks of the memory that it may take."""
+    if drive.kept:
+        yield from drive.kept
+        return
+    samples = max(1, _BLOCK // drive.parts)
+    for first in range(0, drive.ends.size, samples):
+        yield _block(drive, first, min(first + samples, drive.ends.size))
 
 
 def parts_of(pieces: Pieces, w: np.ndarray, zeta: np.ndarray) -> np.ndarray:
     """Number of parts of a sample in which the fastest part of each oscillator turns by TURN at most."""
     with np.errstate(invalid="ignore"):
         rate = w * np.where(zeta > 1.0, zeta + np.sqrt((zeta - 1.0) * (zeta + 1.0)), 1.0)
-    return np.maximum(1, np.ceil(rate * float(pieces.steps.max()) / TURN)).astype(np.int64)
+    parts = np.ceil(rate * float(pieces.steps.max()) / TURN)
+    if parts.max() > _MOST_PARTS:
+        least = 2.0 * np.pi * float(pieces.steps.max()) / _MOST_PARTS
+        raise InputError("period", f"must be >= {least:.3g} for samples that far apart; got a shorter one")
+    return np.maximum(1, parts).astype(np.int64)
 
 
 def in_lanes(parts: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
@@ -107,7 +152,12 @@ def follow(drive: Driven, these: Oscillators) -> Responses:
     cells[2], cells[3] = _HOLDS, 1.0
     for row, values in zip(cells, these, strict=True):
         row[:count] = values
-    state = follow_lanes(drive.load, drive.lengths, drive.duration, cells)[:, :count]
+    state, begins = np.zeros((STATE_ROWS, LANES)), True
+    for block in _blocks(drive):
+        follow_lanes(block, drive.lengths, cells, state, begins)
+        begins = False
+    rest_lanes(state, float(drive.pieces.times[-1]))
+    state = state[:, :count]
     rests = np.isin(state[STATUS], (RESOLVED, CREEPING))
     return Responses(
         state[REACH], state[PEAK], np.where(rests, state[X], np.nan), state[DISTANCE], state[STOPS],

@@ -7,6 +7,7 @@ from lcg_records import lcg
 from scipy.stats import binom
 
 import frictionmap as fm
+from frictionmap.motions import lanes
 from frictionmap.motions.record import Record
 from frictionmap.motions.spectra import spectrum
 from frictionmap.motions.statistics import exceedance, lognormal, median, over_scale, quantiles
@@ -80,6 +81,26 @@ def test_unequal_steps_and_equal_ones_give_the_same():
     np.testing.assert_array_equal(more.stops, plain.stops)
     np.testing.assert_allclose(more.amplitude, plain.amplitude, rtol=1e-10)
     np.testing.assert_allclose(more.acceleration_amplitude, plain.acceleration_amplitude, rtol=1e-10)
+
+
+@pytest.mark.parametrize("interpolation", ["linear", "cubic", "hold"])
+def test_blocks_of_a_record_give_the_same_bits(monkeypatch, interpolation):
+    """Long records, and samples in many parts, are followed block by block."""
+    given, periods = records(interpolation=interpolation), [0.02, 0.3, 2.0, np.inf]
+    whole = spectrum(given, periods, FRICTION, mu=1.2, damping=0.05)
+    monkeypatch.setattr(lanes, "_BLOCK", 40)
+    assert spectrum(given, periods, FRICTION, mu=1.2, damping=0.05).identical(whole)
+
+
+def test_a_stiff_mass_rests_where_its_spring_holds_the_load():
+    """With a period far below the samples it slides with the load until this turns, and is then stuck."""
+    ds = spectrum(Record([0.0, 1.0, 0.0], dt=1.0), 2 * np.pi / 500, 0.3, damping=1.0).squeeze()
+    # w^2 x = -(1 - 0.3) at the peak, less the damper's part; then the load falls by 0.6 before it slides back
+    slower = 2.0 / 500 + 1.0 / 500**2
+    assert float(ds.amplitude) * 500**2 == pytest.approx(0.7, abs=slower)
+    assert float(ds.residual) * 500**2 == pytest.approx(-0.3, abs=slower)
+    with pytest.raises(fm.InputError, match="period"):
+        spectrum(Record([0.0, 1.0], dt=1.0), 1e-9, 0.3)
 
 
 def test_units_are_those_of_the_record():

@@ -21,7 +21,6 @@ from .spectrum_lanes import (
     SERIES,
     SLIDES,
     SQUARE,
-    STATE_ROWS,
     STATIC,
     TABLE_ROWS,
     Lanes,
@@ -77,37 +76,45 @@ def _follow_straight(record, lanes):
 
 
 @entry
-def follow_lanes(record, lengths, duration, cells):
-    """Follow eight oscillators from rest through a record, and on until they rest permanently.
+def follow_lanes(record, lengths, cells, state, begins):
+    """Follow eight oscillators through a record, or through a block of its samples.
 
     Parameters
     ----------
     record : Load
     lengths : (T,) distinct lengths of samples
-    duration : of the record
     cells : (4, LANES) w, zeta, beta, mu
-
-    Returns
-    -------
-    (STATE_ROWS, LANES) : see `spectrum_lanes`
+    state : (STATE_ROWS, LANES) see `spectrum_lanes`; at the end of the block
+    begins : whether it is the first block, at whose beginning all are at rest
     """
-    lanes = Lanes(
-        np.zeros((STATE_ROWS, LANES)), np.zeros((lengths.size, TABLE_ROWS, LANES)), np.zeros((3, SERIES))
-    )
-    _follow(record, lanes, lengths, duration, cells)
-    return lanes.state
+    lanes = Lanes(state, np.zeros((lengths.size, TABLE_ROWS, LANES)), np.zeros((3, SERIES)))
+    _follow(record, lanes, lengths, cells, begins)
 
 
 @kernel
-def _follow(record, lanes, lengths, duration, cells):
+def _follow(record, lanes, lengths, cells, begins):
     """See `follow_lanes`, which keeps the arrays."""
     record, lanes = packed(record), packed(lanes)
-    _put(lanes, cells)
+    if begins:
+        _put(lanes, cells)
     fill_tables(lanes, lengths, record.curved)
     if record.curved:
         for k in range(record.ends.size):
             _follow_curved(record, lanes, k)
     else:
         _follow_straight(record, lanes)
+
+
+@entry
+def rest_lanes(state, duration):
+    """Follow eight oscillators after their record, which ends at `duration`, until they rest permanently."""
+    lanes = Lanes(state, np.zeros((0, TABLE_ROWS, LANES)), np.zeros((3, SERIES)))
+    _rest(lanes, duration)
+
+
+@kernel
+def _rest(lanes, duration):
+    """See `rest_lanes`, which keeps the arrays."""
+    lanes = packed(lanes)
     for i in range(LANES):
         rest(lanes, i, duration)

@@ -178,8 +178,8 @@ def pass_quiet(record, lanes, first):
     Returns
     -------
     (k, lanes) : the sample that is not quiet, or their number; the lanes, as bits, that may have an event in
-        it, or a peak of the acceleration within it.  `lanes.state` is that after the sample, which is not true
-        for these lanes, and the rows OLD_X to OLD_PEAK are those before it.
+        it, or a peak of the acceleration within it.  `lanes.state` is that after the sample, but not true for
+        these lanes, and the rows OLD_X to OLD_PEAK are those before it.
     """
     state, tables = lanes.state, lanes.tables
     x, v, acc = load(state, X * LANES), load(state, V * LANES), load(state, ACC * LANES)

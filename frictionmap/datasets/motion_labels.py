@@ -13,7 +13,7 @@ STATUSES = (
     regimes.Code(1, "ringing", "contacts may move on after the longest time; give a time as `after`"),
     regimes.Code(2, "creeping", "a contact slides ever slower and never stops; it rests at `residual`"),
     regimes.Code(3, "too_many_events", "chattering: more than 2000 events between two samples"),
-    regimes.Code(4, "record_too_short", "it ended before all contacts were at rest for good"),
+    regimes.Code(4, "record_too_short", "it ended before all contacts were at rest permanently"),
     regimes.Code(5, "undetermined", "contacts close a loop in a common stop, and their forces are not "
                  "determined"),
 )  # fmt: skip

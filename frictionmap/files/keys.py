@@ -571,7 +571,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "which samples of histories are kept",
             either(word("all", "none"), whole(least=1)),
             "all",
-            words='"all", "none", or every so many samples',
+            words='"all", "none", or a number of samples from one to the next',
         ),
     ),
     "spectrum": (

@@ -62,7 +62,7 @@ def describe_motions(ds: xr.Dataset) -> list[str]:
     motions = [ds.isel(dict(zip(CELL, cell, strict=True))) for cell in cells[:_MOST_LINES]]
     if len(cells) == 1:
         return [f"{name:<{_WIDTH}} {text}" for name, text in _rows(motions[0])]
-    lines = [f"{_heading(one):<{_WIDTH}} {_in_short(one)}" for one in motions]
+    lines = [f"{_heading(one):<{_WIDTH}} {_summary(one)}" for one in motions]
     if len(cells) > _MOST_LINES:
         lines.append(f"... and {len(cells) - _MOST_LINES} further motions")
     return lines
@@ -77,7 +77,7 @@ def _heading(one: xr.Dataset) -> str:
     return f"{', '.join(words)}, beta {float(one['beta']):.4g}"
 
 
-def _in_short(one: xr.Dataset) -> str:
+def _summary(one: xr.Dataset) -> str:
     words = [f"largest displacement {_measured(one, 'amplitude', 'length', 'm')}"]
     words += [f"{name} {_listed(one[name].values)}" for name in ("stops", "slips") if name in one]
     if np.isfinite(one["residual"].values).any():
@@ -136,7 +136,7 @@ def _rows(one: xr.Dataset) -> Iterator[tuple[str, str]]:
         yield "nothing moves from friction", _measured(one, "beta_hold", "force", "N")
     if np.isfinite(one["asleep_time"]):
         unit = "s" if one["asleep_time"].attrs.get("units") == "s" else ""
-        yield "at rest for good after", _listed(one["asleep_time"].values, unit)
+        yield "at rest permanently after", _listed(one["asleep_time"].values, unit)
 
 
 def table_of(ds: xr.Dataset) -> Any:

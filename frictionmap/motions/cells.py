@@ -94,7 +94,9 @@ class Motions:
         friction = Friction(np.ascontiguousarray(kinetic), np.ascontiguousarray(static))
         start = _starting(self.structure, asked.start)
         bed = self.held.bed
-        samples = int(limits[0]) and steps.size // int(limits[0]) + int(limits[1] * (1 - limits[2]))
+        samples = 0
+        if asked.every:
+            samples = steps.size // asked.every + int(limits[1] * (1 - limits[2]))
         events = _FIRST + steps.size // _SAMPLES_PER_EVENT
         room = np.array([events, samples and samples + 2 * events * int(limits[3]) + _FIRST])
         rounding = self._rounding(static, scale)

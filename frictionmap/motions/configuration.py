@@ -144,20 +144,22 @@ def _values(given: Any, name: str, kind: str) -> Any:
     for key in given:
         if key not in valid:
             raise InputError(f"unknown key {f'spectrum.{name}.{key}'!r}; valid: {', '.join(valid)}")
+    for key in ("start", "stop", "num"):
+        if key not in given:
+            raise InputError(f"{name}.{key}", "must be given; got nothing")
     spacing = checks.choice(given.get("spacing", "linear"), f"{name}.spacing", ("linear", "log"))
-    ends = [given.get("start"), given.get("stop")]
-    texts = [isinstance(end, str) for end in ends]
-    found = quantities(ends, name, kind) if any(texts) else ends
-    start, stop = (checks.number(float(end), name, least=0.0) for end in found or ())
-    num = checks.whole(given.get("num"), f"{name}.num", least=2)
+    ends = [given["start"], given["stop"]]
+    exact = quantities(ends, name, kind)
+    start, stop = (checks.number(float(end), name, least=0.0) for end in exact) if exact else (
+        checks.number(end, name, least=0.0) for end in ends
+    )  # fmt: skip
+    num = checks.whole(given["num"], f"{name}.num", least=2)
     if spacing == "log" and start <= 0.0:
         raise InputError(f"{name}.start", f"must be > 0 with spacing log; got {start:g}")
     values = np.linspace(start, stop, num) if spacing == "linear" else np.geomspace(start, stop, num)
-    return (
-        [f"{value!r} m/s^2" for value in values.tolist()]
-        if any(texts) and kind == "acceleration"
-        else values.tolist()
-    )
+    if exact and kind == "acceleration":
+        return [f"{value!r} m/s^2" for value in values.tolist()]
+    return values.tolist()
 
 
 def _periods(given: Any) -> Any:

@@ -1,7 +1,7 @@
 """Pictures of motions in time under records, and of friction response spectra."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
@@ -25,13 +25,13 @@ _WIDE, _HIGH = 7.4, 2.0
 _WIDTH, _HEIGHT = 5.6, 4.0
 
 #: Lines of single records, behind their median.
-_FAINT = {"linewidth": 0.7, "alpha": 0.35}
+_FAINT: dict[str, Any] = {"linewidth": 0.7, "alpha": 0.35}
 
 #: Friction values that spectra have a colour for.
 _MOST_LINES = len(LINES)
 
 
-def _beside(ds: xr.Dataset, name: str, suffix: str, unit: str) -> tuple[np.ndarray, str]:
+def _values_in_si(ds: xr.Dataset, name: str, suffix: str, unit: str) -> tuple[np.ndarray, str]:
     """Values of a variable in SI units where they are there, and the unit in brackets."""
     in_si = f"{name}_{suffix}"
     return (ds[in_si].values, f" [{unit}]") if in_si in ds else (ds[name].values, "")
@@ -67,10 +67,10 @@ def _draw_traces(axes: "AxesArray", ds: xr.Dataset) -> list[Handle]:
     drive = ds["drive"].values
     axes[0].plot(time, drive, color="black", linewidth=0.8)
     axes[0].set_ylabel("record")
-    x, length = _beside(ds, "x", "m", "m")
+    x, length = _values_in_si(ds, "x", "m", "m")
     handles = _draw_rows(axes[1], time, x, "mass")
     axes[1].set_ylabel(f"displacement{length}")
-    force, newton = _beside(ds, "friction", "N", "N")
+    force, newton = _values_in_si(ds, "friction", "N", "N")
     handles += _draw_rows(axes[2], time, force, "contact")
     axes[2].set_ylabel(f"contact force{newton}")
     axes[2].set_xlabel(f"time{unit}")
@@ -131,7 +131,7 @@ def plot_history(
 
 def _draw_peaks(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     """Draw the largest displacement of the last mass over friction: every record, and their median."""
-    values, unit = _beside(ds, "amplitude", "m", "m")
+    values, unit = _values_in_si(ds, "amplitude", "m", "m")
     peaks = values[..., -1].reshape(-1, *values.shape[2:-1])  # records and scales, mu, beta
     beta = ds["beta"].values
     handles: list[Handle] = []

@@ -97,8 +97,8 @@ class Motions:
         samples = 0
         if asked.every:
             samples = steps.size // asked.every + int(limits[1] * (1 - limits[2]))
-        events = _FIRST + steps.size // _SAMPLES_PER_EVENT
-        room = np.array([events, samples and samples + 2 * events * int(limits[3]) + _FIRST])
+        expected = _FIRST + steps.size // _SAMPLES_PER_EVENT
+        room = np.array([expected, samples and samples + 2 * expected * int(limits[3]) + _FIRST])
         rounding = self._rounding(static, scale)
         course = Course(np.ascontiguousarray(terms), steps, self.drive.times, self.drive.jumps)
         while True:

@@ -44,7 +44,8 @@ def problem_of(structure: Structure, drive: Drive) -> Problem:
     push = np.ascontiguousarray(modal.phi.T @ drive.push)
     largest = np.abs(drive.terms).sum(axis=2).max(axis=0)
     moved = np.array([float(group.base) for group in general.groups])
-    belt = np.array([group.first.wall_velocity for group in general.groups])
+    # at r = 1 both are over omega_1 P/k_1
+    belt = np.array([group.first.wall_velocity + group.first.wall_speed for group in general.groups])
     size = float((np.abs(push) @ largest / (modal.squares + 1.0)).max())
     return Problem(
         modal.squares, modal.damping, bool((modal.damping != np.diag(np.diag(modal.damping))).any()),

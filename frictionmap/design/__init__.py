@@ -25,11 +25,19 @@ configuration  the table [design] of a configuration
 =============  ==========================================================================================
 """
 
+from importlib import import_module
+
 from .questions import *  # noqa: F403 (the functions of the questions)
 from .questions import __all__ as _questions
 from .samples import Samples
 
-__all__ = ["Samples", *_questions]
+__all__ = ["Samples", "least_median", *_questions]  # noqa: F405
+
+
+def __getattr__(name: str) -> object:
+    if name == "least_median":  # about motions in time, which stand below
+        return import_module("frictionmap.motions.choice").least_median
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:

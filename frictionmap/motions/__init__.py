@@ -18,6 +18,7 @@ structure      a system under channels as arrays for the kernels, and what is wa
 starts         states at the beginning: at rest, given, or where another motion ended
 cells          the motions of a grid of records, scales and friction, on several threads
 dataset        `history`: motions in time as labelled variables
+choice         `least_median`: the friction with the least median of a peak over records
 lanes          oscillators with friction under one record, eight at a time
 spectra        `spectrum`: friction response spectra of one mass
 statistics     medians, quantiles and exceedance over records

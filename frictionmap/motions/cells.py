@@ -34,7 +34,7 @@ class Asked(NamedTuple):
 
     start: Start
     after: float | None  # time after the record; None: until it is asleep
-    every: int  # states are kept every so many samples; 0: none
+    every: int  # number of samples from a kept state to the next; 0: none
 
 
 class Found(NamedTuple):

@@ -61,11 +61,17 @@ def describe_motions(ds: xr.Dataset) -> list[str]:
     cells = list(np.ndindex(*(ds.sizes[dim] for dim in CELL)))
     motions = [ds.isel(dict(zip(CELL, cell, strict=True))) for cell in cells[:_MOST_LINES]]
     if len(cells) == 1:
-        return [f"{name:<{_WIDTH}} {text}" for name, text in _rows(motions[0])]
+        return [f"{name:<{_WIDTH}} {text}" for name, text in (*_rows(motions[0]), *_remarks(ds))]
     lines = [f"{_heading(one):<{_WIDTH}} {_summary(one)}" for one in motions]
     if len(cells) > _MOST_LINES:
         lines.append(f"... and {len(cells) - _MOST_LINES} further motions")
-    return lines
+    return [*lines, *(f"{name}: {text}" for name, text in _remarks(ds))]
+
+
+def _remarks(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """What to look out for, of a dataset that says so."""
+    if "remark" in ds.attrs:
+        yield "remark", str(ds.attrs["remark"])
 
 
 def _heading(one: xr.Dataset) -> str:

@@ -12,6 +12,7 @@ densities      spectral densities of random loads
 generators     random records of a spectral density
 record         `Record`: a load or a base motion over time
 channels       what a record drives: loads on the masses, walls, normal loads
+origins        where records come from; bases that drift at their end
 scaling        what makes a record dimensionless; friction as a force or as an acceleration
 bed            the structure with all contacts held under no load: place of rest, asleep or not
 structure      a system under channels as arrays for the kernels, and what is watched of it

@@ -20,6 +20,7 @@ from ..units.scales import Scales, Units
 from ..version import __version__
 from .cells import Asked, Found, Motions, run_all
 from .channels import checked_record, drive_of
+from .origins import record_attributes
 from .record import Record
 from .scaling import friction_ratios, motion_scales, scale_of
 from .starts import start_of
@@ -184,6 +185,7 @@ def history(
         "Conventions": "CF-1.11", "title": "Motion in time" if single else "Motions in time",
         "source": f"frictionmap {__version__}", "references": REFERENCES, "system": system.describe(),
         "excitation": excitation_of(system), "history": f"{now()} frictionmap.history",
+        **record_attributes(structure.system, grid.records),
     }  # fmt: skip
     return in_si(ds, scales)
 

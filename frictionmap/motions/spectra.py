@@ -16,6 +16,7 @@ from ..units.quantities import quantities
 from ..units.table import UNITS
 from ..version import __version__
 from .lanes import Driven, Oscillators, Responses, driven, follow, in_lanes, parts_of
+from .origins import record_attributes
 from .pieces import Pieces, derivative
 from .record import Record
 
@@ -190,6 +191,7 @@ def spectrum(
         "Conventions": "CF-1.11", "title": "Friction response spectra",
         "source": f"frictionmap {__version__}",
         "references": REFERENCES, "history": f"{now()} frictionmap.spectrum",
+        **record_attributes(None, listed),
     })  # fmt: skip
 
 

@@ -353,6 +353,8 @@ class Record(Shown):
         envelope : str or dict, optional
             "trapezoid" or "jennings"; or a table with `kind` and times: `rise` and `fall` of a trapezoid;
             `rise`, `end` of the level, and `decay` (1 over time) of Jennings's.
+        baseline : {"none", "mean", "linear"}, optional
+            What is taken off the samples, as of `read`.
         more
             Keys of the kind: frequency and damping of the soil of "kanai-tajimi"; besides filter_frequency
             and filter_damping of "clough-penzien"; wind_speed in 10 m height [m/s] of "davenport"; frequency
@@ -371,21 +373,23 @@ class Record(Shown):
         length = time_in(duration, "duration", unit)
         size = {key: more.pop(key, None) for key in ("level", "rms", "peak")}
         shape = more.pop("envelope", None)
+        baseline = checks.choice(more.pop("baseline", "none"), "baseline", BASELINES)
         others = {key: more.pop(key) for key in ("mass", "vector", "scale") if key in more}
         noise = Noise(density_of(kind, more, unit), angular(unit), step, samples_in(length, step), how)
         checks.whole(seed, "seed", least=0, most=2**64 - 1)
         checks.whole(count, "count", least=1, most=2**63)
+        times = step * np.arange(noise.size)
         factor = np.full(noise.size, _size(noise, size, kind, quantity, unit))
         if shape is not None:
-            factor *= over_time(shape, length, unit)(step * np.arange(noise.size))
-        found = [
-            cls(
-                factor * random_samples(noise, seed, k), step, quantity=quantity, unit=unit,
-                interpolation=how, name=f"{kind} {k + 1}", source=f"{kind}, seed {seed}, record {k}",
-                **others,
-            )
-            for k in range(count)
-        ]  # fmt: skip
+            factor *= over_time(shape, length, unit)(times)
+        found = []
+        for k in range(count):
+            values, note = corrected(factor * random_samples(noise, seed, k), times, baseline, unit)
+            record = cls(
+                values, step, quantity=quantity, unit=unit, interpolation=how, name=f"{kind} {k + 1}",
+                source=f"{kind}, seed {seed}, record {k}", note=note, **others,
+            )  # fmt: skip
+            found.append(record)
         return found if size["peak"] is None else [record.scaled_to(size["peak"]) for record in found]
 
     @classmethod

@@ -33,7 +33,7 @@ _BESIDE = {
     "files": (*_COMMON, "interpolation", "dt", "baseline", "decimal", "columns"),
     "pulse": _COMMON,
     "sweep": _COMMON,
-    "generate": (*_COMMON, "interpolation"),
+    "generate": (*_COMMON, "interpolation", "baseline"),
 }
 
 #: Names of arguments of `Record.sweep` whose keys are other words.

@@ -12,6 +12,7 @@ from scipy.integrate import quad
 
 from frictionmap import InputError
 from frictionmap.motions.generators import kept_share
+from frictionmap.motions.origins import end_velocity
 from frictionmap.motions.record import Record
 
 SIGMAS = 4.5
@@ -187,6 +188,16 @@ def test_envelopes():
     (jennings,) = Record.generate("white", 50, 0.05, level=1.0, envelope="jennings")  # type B is of 50 s
     factor = np.where(t < 4, (t / 4) ** 2, np.where(t < 15, 1.0, np.exp(-0.0992 * (t - 15))))
     np.testing.assert_allclose(jennings.values, plain.values * factor, rtol=0, atol=1e-13)
+
+
+def test_a_base_without_its_mean_comes_to_rest():
+    (plain,), (record,) = (
+        Record.generate("white", 50, 0.05, level=1.0, envelope="trapezoid", **more)
+        for more in ({}, {"baseline": "mean"})
+    )
+    np.testing.assert_allclose(record.values, plain.values - plain.values.mean(), rtol=0, atol=1e-14)
+    assert record.note == f"the mean, {plain.values.mean():.6g}, is taken off"
+    assert abs(end_velocity(record)) < 1e-2 < abs(end_velocity(plain))
 
 
 SOIL = {"frequency": 2.5, "damping": 0.6}

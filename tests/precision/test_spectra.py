@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from lcg_records import lcg
 from matrix_motion import followed
+from mpmath import mp
 
 from frictionmap.motions.record import Record
 from frictionmap.motions.spectra import spectrum
@@ -120,6 +121,18 @@ def test_without_friction_a_mass_does_not_rest():
     assert one(sliding, "amplitude") == np.inf
     # a step of 2 time units, then free: x = 1 - cos, of amplitude 2 sin(1)
     assert one(swinging, "amplitude") == pytest.approx(2 * np.sin(1.0), rel=1e-13)
+
+
+@pytest.mark.parametrize("step", [0.001, 0.05])
+def test_an_undamped_motion_keeps_its_amplitude(step):
+    """After 200,000 samples under a constant load another load shows place and velocity in the peak."""
+    count = 200_000
+    load = np.append(np.full(count, 1.0), np.full(int(7 / step), -5.0))
+    ds = spectrum(Record(load, dt=step, quantity="force", interpolation="hold"), 2 * np.pi, 0.0)
+    with mp.workdps(30):
+        time = mp.mpf(step) * count
+        exact = float(5 + mp.hypot(6 - mp.cos(time), mp.sin(time)))
+    assert one(ds, "amplitude") == pytest.approx(exact, rel=2e-14)
 
 
 CELLS = [

@@ -92,15 +92,16 @@ def series_terms(angle, curved):
     return terms + 3 if curved else terms
 
 
-@kernel
+@inner_kernel
 def fill_rates(series, h, damping, square, terms):
     """Fill the series of v from its first two terms and the series of the load."""
     rates, given = series[RATES], series[LOAD]
     drag, spring = h * damping, h * h * square
+    before, last = rates[0], rates[1]
     for j in range(terms - 2):
-        rates[j + 2] = INVERSE[j + 2] * (h * given[j + 1] - drag * rates[j + 1]) - (
-            _PAIRS[j] * spring * rates[j]
-        )
+        known = INVERSE[j + 2] * h * given[j + 1] - _PAIRS[j] * spring * before
+        before, last = last, known - INVERSE[j + 2] * drag * last
+        rates[j + 2] = last
 
 
 @kernel

@@ -6,7 +6,7 @@ it decides.
 
 import math
 
-from ..compiler import kernel
+from ..compiler import inner_kernel, kernel
 from ..general.problem import PIECE_TERMS
 from ..taylor_series import MAX_POLISH, ONE_STEP, cubic_root, first_root, reversion
 from .motion import RESOLVED, TOO_MANY_EVENTS
@@ -60,7 +60,7 @@ _HALVINGS = 30
 _EQUAL = 1.0 + 2.0**-50
 
 
-@kernel
+@inner_kernel
 def release(state, i, side, pull):
     """Let the mass slide to `side`; pull : load less the force of the spring."""
     state[SENSE, i], state[SLIDES, i], state[HELD, i] = side, 1.0, 0.0
@@ -68,7 +68,7 @@ def release(state, i, side, pull):
     state[V, i], state[ACC, i], state[FROM, i] = 0.0, pull - side * state[BETA, i], state[X, i]
 
 
-@kernel
+@inner_kernel
 def stick(state, i):
     """Hold the mass."""
     state[SENSE, i], state[SLIDES, i], state[HELD, i] = 0.0, 0.0, 1.0
@@ -76,7 +76,7 @@ def stick(state, i):
     state[V, i] = state[ACC, i] = 0.0
 
 
-@kernel
+@inner_kernel
 def _value(row, terms, x):
     """Value of a series."""
     sum_ = 0.0
@@ -85,13 +85,17 @@ def _value(row, terms, x):
     return sum_
 
 
-@kernel
-def _fill_load(pieces, begin, rest, series):
+@inner_kernel
+def _fill_load(pieces, begin, rest, curved, series):
     """Fill the series of the load over a share `rest` of the sample after `begin`."""
     row = series[LOAD]
     for k in range(PIECE_TERMS):
         row[k] = pieces[k]
     if begin == 0.0:
+        return
+    if not curved:
+        row[0] += begin * row[1]
+        row[1] *= rest
         return
     for i in range(PIECE_TERMS - 1):
         for k in range(PIECE_TERMS - 2, i - 1, -1):
@@ -102,7 +106,7 @@ def _fill_load(pieces, begin, rest, series):
         scale *= rest
 
 
-@kernel
+@inner_kernel
 def _derivatives(row, first, terms, x):
     """Value, and derivatives over their factorials, of a series without the first factors x."""
     value = slope = bend = third = 0.0
@@ -114,25 +118,28 @@ def _derivatives(row, first, terms, x):
     return value, slope, bend, third
 
 
-@kernel
+@inner_kernel
 def _first_zero(row, first, terms):
     """First zero in (0, 1] of a series that begins with the positive term `first`; NONE without one.
 
     Where the series certainly falls all the way, the zero of the cubic through its ends is improved to
     fourth order; else the steps of `first_root` pass no zero.
     """
-    others = bend = 0.0
+    others = bend = fall = slope_after = 0.0
     for k in range(first + 1, terms):
-        others += abs(row[k])
-        bend += (k - first) * (k - first - 1.0) * abs(row[k])
+        size, factor = abs(row[k]), float(k - first)
+        others += size
+        bend += factor * (factor - 1.0) * size
+        fall += row[k]
+        slope_after += factor * row[k]
     if row[first] > others:
         return NONE
     if -row[first + 1] <= bend:
         return first_root(row, first, terms)
-    end = _derivatives(row, first, terms, 1.0)
-    if end[0] > 0.0:
+    after = row[first] + fall
+    if after > 0.0:
         return NONE
-    x = cubic_root(row[first], row[first + 1], end[0], end[1])
+    x = cubic_root(row[first], row[first + 1], after, slope_after)
     for _ in range(MAX_POLISH):
         value, slope, second, third = _derivatives(row, first, terms, x)
         step = reversion(value, slope, 2.0 * second, 6.0 * third)
@@ -142,7 +149,7 @@ def _first_zero(row, first, terms):
     return x
 
 
-@kernel
+@inner_kernel
 def _change(row):
     """Bound on the distance of a load from its value at the beginning of a piece."""
     sum_ = 0.0
@@ -188,7 +195,7 @@ def _keep_peak(state, i, row, terms, end):
     state[PEAK, i] = peak
 
 
-@kernel
+@inner_kernel
 def _may_beat(lanes, i, h, ends):
     """Whether the acceleration of the present slide, of the length `h`, may beat its peak so far.
 
@@ -221,7 +228,7 @@ def _keep_acceleration(lanes, i, h, base, terms, end):
     _keep_peak(state, i, row, terms, end)
 
 
-@kernel
+@inner_kernel
 def _first_overload(lanes, i, side):
     """First x in [0, 1] at which the load overcomes the contact towards `side`; NONE without one."""
     state, given, row = lanes.state, lanes.series[LOAD], lanes.series[WATCHED]
@@ -251,7 +258,7 @@ def _first_overload(lanes, i, side):
     return x
 
 
-@kernel
+@inner_kernel
 def _wait(lanes, i, base):
     """Wait for a release in the present piece of the load; return when it is, or NONE."""
     state, given = lanes.state, lanes.series[LOAD]
@@ -270,7 +277,7 @@ def _wait(lanes, i, base):
     return x
 
 
-@kernel
+@inner_kernel
 def _end_slide(lanes, i, x, pull):
     """Stop at x, or turn; pull : load less the force of the spring."""
     state = lanes.state
@@ -286,7 +293,7 @@ def _end_slide(lanes, i, x, pull):
     release(state, i, side, pull)
 
 
-@kernel
+@inner_kernel
 def slide(lanes, i, h, base, terms):
     """Slide through the present piece of the load.
 
@@ -336,7 +343,7 @@ def slide(lanes, i, h, base, terms):
     return NONE
 
 
-@kernel
+@inner_kernel
 def _cross(record, lanes, i, k):
     """Follow the motion through sample k; False if there are too many events."""
     state = lanes.state
@@ -344,7 +351,7 @@ def _cross(record, lanes, i, k):
     begin = 0.0
     for _ in range(_MOST_EVENTS):
         rest = 1.0 - begin
-        _fill_load(record.terms[k], begin, rest, lanes.series)
+        _fill_load(record.terms[k], begin, rest, record.curved, lanes.series)
         if state[SENSE, i] == 0.0:
             x = _wait(lanes, i, record.base)
         else:
@@ -367,7 +374,7 @@ def follow_sample(record, lanes, i, k):
     set_level(lanes, i, record.ends[k], record.base)
 
 
-@kernel
+@inner_kernel
 def set_level(lanes, i, end, base):
     """Set the modulus of the acceleration at the end of a sample, where the load is `end`."""
     state = lanes.state

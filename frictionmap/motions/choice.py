@@ -77,7 +77,7 @@ def least_median(
     ends = friction_ratios(beta, "beta", motion_scales(units, system))
     if ends.size != 2 or ends[0] >= ends[1]:
         raise InputError("beta", f"must be two values of friction, from and to; got {checks.one_line(beta)}")
-    options = {"mu": mu, "units": units, "after": after, "samples": "none", "threads": threads}
+    options: dict[str, Any] = {"mu": mu, "units": units, "after": after, "samples": "none", "threads": threads}
 
     def peaks(friction: np.ndarray) -> np.ndarray:
         ds = history(system, records, beta=friction, **options)

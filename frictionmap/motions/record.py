@@ -404,7 +404,7 @@ class Record(Shown):
         )  # fmt: skip
 
     def scaled_to(self, peak: float | str) -> "Record":
-        """The record times a factor, so that its largest absolute sample is `peak`.
+        """The record times a positive factor, so that its largest absolute sample is `peak`.
 
         peak : in the unit of the record, or with a unit, > 0
 
@@ -417,7 +417,7 @@ class Record(Shown):
         largest = float(np.abs(self.values).max())
         if largest == 0.0:
             raise InputError(f"cannot scale a record to peak {peak}: all its samples are 0; give another one")
-        return replace(self, scale=size / largest)
+        return replace(self, scale=math.copysign(size / largest, self.scale))
 
     def _repr_html_(self) -> str:
         return f"<pre>{self!r}</pre>"

@@ -212,7 +212,7 @@ SOIL = {"frequency": 2.5, "damping": 0.6}
         ({"kind": "white", "level": 1, "damping": 0.1}, "unknown key 'damping' of kind white; valid: none"),
         ({"kind": "kanai-tajimi", "level": 1, "frequency": 1}, "damping must be given for kind"),
         ({"kind": "kanai-tajimi", "level": 1, **SOIL, "damping": 0}, "damping must be > 0"),
-        ({"kind": "kanai-tajimi", "level": 1, **SOIL, "frequency": "2 Hz"}, "frequency must be a number in"),
+        ({"kind": "kanai-tajimi", "level": 1, **SOIL, "frequency": "2 Hz"}, "frequency must be a number"),
         ({"kind": "davenport", "level": 1, "wind_speed": 30}, "unit must be given for kind dav"),
         ({"kind": "table", "frequency": [1, 2], "density": [1]}, "density must have as many values"),
         ({"kind": "table", "frequency": [2, 1], "density": [1, 1]}, "frequency must be increasing"),

@@ -71,6 +71,8 @@ def test_scaled_to_a_peak():
         scaled = record.scaled_to(peak)
         assert np.abs(scaled.values * scaled.scale).max() == pytest.approx(0.5, rel=1e-15)
         assert scaled.unit == "g"
+    turned = Record([0.0, -0.2, 0.1], 0.01, scale=-3.0).scaled_to(0.5)
+    assert (turned.values * turned.scale).max() == pytest.approx(0.5, rel=1e-15)
 
 
 @pytest.mark.parametrize(

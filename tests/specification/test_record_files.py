@@ -80,9 +80,9 @@ def cosmos(kind=1, unit=4, ms=5.0, values=VALUES, count=None):
     whole[:3], real[61], real[62] = (2, kind, unit), ms, ms * len(values) / 1000
     name = {1: "acceleration", 2: "velocity", 3: "displacement"}.get(kind, "counts")
     lines = ["Corrected acceleration   (Format v01.20 with 13 text lines) Src: 999", "Somewhere Earthquake"]
-    lines += [f"text {k}" for k in range(12)]
+    lines += [f"text {k}" for k in range(11)]  # 13 with the first one
     lines += block("{:4d} Integer-header values follow on {:3d} lines, Format=(10I8)", whole, "{:8d}", 10)
-    lines += block("{:4d} Real-header values follow on {:3d} lines, Format=(6F13.6)", real, "{:13.6f}", 6)
+    lines += block("{:4d} Real-header values follow on {:3d} lines , Format = (6F13.6)", real, "{:13.6f}", 6)
     lines += ["   2 Comment line(s) follow, each starting with a '|':", "| one", "| two"]
     rows = block("", values, "{:10.3f}", 8)[1:]
     title = (
@@ -104,6 +104,16 @@ def test_peer(tmp_path):
     assert record.name == "RSN6_IMPVALL.I_I-ELC180"
     assert "El Centro Array #9" in record.source
     assert f"{zlib.crc32(file.read_bytes()):08x}" in record.source
+
+
+def test_peer_values_may_touch(tmp_path):
+    """14 characters each: a minus fills the place of the blank.  The unit may end a sentence."""
+    file = peer(tmp_path / "a.at2", unit="G. FILTER POINTS: HP=0.2 Hz LP=20 Hz")
+    values = [-0.0012345671, -0.36162, 0.25, -7.5e-5, 0.0, -0.1, -0.2]
+    rows = ["".join(f"{value:14.7E}" for value in values[k : k + 5]) for k in (0, 5)]
+    assert "E-03-3" in rows[0]
+    written(file, file.read_text().splitlines()[:4] + rows)
+    np.testing.assert_allclose(Record.read(file).values, values, rtol=1e-7)
 
 
 def test_old_peer_velocity(tmp_path):
@@ -144,6 +154,12 @@ def test_cosmos(tmp_path):
     np.testing.assert_array_equal(record.values, np.round(VALUES, 3))
     assert (record.dt, record.quantity, record.unit) == (0.005, "acceleration", "cm/s^2")
     assert "Somewhere" in record.source
+
+
+@pytest.mark.parametrize("end", ["End-of-data for ChanBNZ", "/&  ----  End of data for channel  1  ----", ""])
+def test_ends_of_cosmos_files(tmp_path, end):
+    record = Record.read(written(tmp_path / "a.V2c", [*cosmos()[:-1], end]))
+    np.testing.assert_array_equal(record.values, np.round(VALUES, 3))
 
 
 def test_numbers_of_cosmos_may_touch(tmp_path):

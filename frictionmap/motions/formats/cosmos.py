@@ -1,4 +1,4 @@
-"""COSMOS strong-motion files `.V1`, `.V2`: headers of text, of integers, of reals, comments, then values.
+"""COSMOS strong-motion files `.V1`, `.V2`, `.V1c`, `.V2c`: headers of text and numbers, comments, values.
 
 Each part begins with a line that counts its values and states their format, such as
 `100 Real-header values follow on 17 lines, Format= (6F13.6)`.  Integer 2 says what the series is, integer 3
@@ -15,6 +15,9 @@ import numpy as np
 
 from ...errors import InputError
 from .series import Series, check_count, lines_of, numbers, shortened
+
+#: Endings of uncorrected and corrected records, also of one channel.
+ENDINGS = (".v1", ".v2", ".v1c", ".v2c")
 
 _FIRST = re.compile(r"\(Format v[\d.]+ with\s+(\d+)\s+text lines\)", re.IGNORECASE)
 _COUNT = re.compile(r"\s*(\d+)\s")
@@ -72,7 +75,7 @@ def _series(path: Path, lines: list[str], at: int) -> tuple[Series, int]:
             f"cannot read {path}, line {at + 1}: a COSMOS file begins with '(Format v01.20 with 13 text "
             f"lines)'; got {lines[at][:40]!r}; download it in the COSMOS format"
         )
-    begin = at + 1 + int(first[1])
+    begin = at + int(first[1])  # the first line is one of them
     whole = _part(path, lines, begin)
     real = _part(path, lines, whole.next)
     comments = _counted(path, lines, real.next)
@@ -99,7 +102,8 @@ def _series(path: Path, lines: list[str], at: int) -> tuple[Series, int]:
 
 
 def _is_end(line: str) -> bool:
-    return line.strip().lower().startswith("end-of-data")
+    """Whether data end: `End-of-data for ..`, or in older files `/&  ---- End of data for channel 1 ----`."""
+    return "end of data" in line.lower().replace("-", " ")
 
 
 def _counted(path: Path, lines: list[str], at: int) -> int:

@@ -7,8 +7,7 @@ from typing import NamedTuple
 from ... import checks
 from ...errors import InputError
 from ...units.table import known_unit
-from . import knet, peer, seismic, tables
-from .cosmos import read_cosmos
+from . import cosmos, knet, peer, seismic, tables
 from .esm import is_esm, read_esm
 from .series import Series
 
@@ -67,8 +66,8 @@ def _read_stated(path: Path, ending: str, given: Given) -> Series:
         return knet.read_knet(path)
     if ending == ".asc":
         return read_esm(path)
-    if ending in (".v1", ".v2"):
-        return read_cosmos(path, given.quantity)
+    if ending in cosmos.ENDINGS:
+        return cosmos.read_cosmos(path, given.quantity)
     if ending in seismic.ENDINGS:
         return seismic.read_seismic(path, given.unit)
     valid = ", ".join((*_STATED, *seismic.ENDINGS, *tables.ENDINGS))

@@ -16,6 +16,9 @@ _SPELLINGS = {
     "m/s^2": "m/s^2", "m/s": "m/s", "m": "m",
 }  # fmt: skip
 
+#: Numbers of fixed width that fill it.
+_TOUCHING = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+
 #: A header quotes this many characters of a file at most.
 _LONGEST = 160
 
@@ -35,7 +38,7 @@ class Series(NamedTuple):
 
 def unit_of(words: str) -> str | None:
     """The unit that a header states; None if it is unknown."""
-    return _SPELLINGS.get(words.strip().lower())
+    return _SPELLINGS.get(words.strip(" .,;").lower())
 
 
 def lines_of(path: Path) -> list[str]:
@@ -61,13 +64,19 @@ def numbers(path: Path, lines: Sequence[str], first: int, width: int | None = No
     """
     found = []
     for k, line in enumerate(lines):
-        if width is None:
-            fields = line.split()
-        else:
-            fields = [field for field in re.findall(f".{{1,{width}}}", line.rstrip()) if field.strip()]
-        for field in fields:
-            found.append(_number(path, field.strip(), first + k))
+        for field in _fields(line) if width is None else re.findall(f".{{1,{width}}}", line.rstrip()):
+            if field.strip():
+                found.append(_number(path, field.strip(), first + k))
     return np.array(found)
+
+
+def _fields(line: str) -> list[str]:
+    """Fields between blanks; where a minus stands in the place of the blank, the numbers that touch."""
+    fields = []
+    for field in line.split():
+        parts = _TOUCHING.findall(field)
+        fields += parts if "".join(parts) == field else [field]
+    return fields
 
 
 def _number(path: Path, field: str, line: int) -> float:

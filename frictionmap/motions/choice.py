@@ -77,10 +77,10 @@ def least_median(
     ends = friction_ratios(beta, "beta", motion_scales(units, system))
     if ends.size != 2 or ends[0] >= ends[1]:
         raise InputError("beta", f"must be two values of friction, from and to; got {checks.one_line(beta)}")
-    options: dict[str, Any] = {"mu": mu, "units": units, "after": after, "samples": "none", "threads": threads}
+    options: dict[str, Any] = {"mu": mu, "units": units, "after": after, "threads": threads}
 
     def peaks(friction: np.ndarray) -> np.ndarray:
-        ds = history(system, records, beta=friction, **options)
+        ds = history(system, records, beta=friction, samples="none", **options)
         values = abs(ds[quantity].isel(scale=0, mu=0))
         if "dof" in values.dims:
             values = values.sel(dof=system.dofs.number(mass, "mass"))

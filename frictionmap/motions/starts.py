@@ -74,7 +74,7 @@ def _from_motion(structure: Structure, ds: xr.Dataset) -> Start:
     needed = [axis, "x", "v", "friction", "direction"]
     missing = [name for name in needed if name not in ds.variables]
     if missing:
-        raise InputError("start", f"must have {', '.join(needed)}, as a history has; {missing[0]} is missing")
+        raise InputError("start", f"must have {', '.join(needed)}, as a history has; got no {missing[0]}")
     last = ds.isel({axis: -1}).squeeze()
     n, contacts = structure.system.n, structure.spring.size
     x, v = _vector(np.atleast_1d(last["x"]), "start.x", n), _vector(np.atleast_1d(last["v"]), "start.v", n)

@@ -282,3 +282,21 @@ def test_the_least_median_of_a_suite(reference_table):
     assert ds.peak.item() == pytest.approx(wanted["median_peak_acceleration"], rel=1e-11)
     assert ds.beta.item() == pytest.approx(wanted["beta"], rel=1e-10)
     assert ds.peak_of_record.values == pytest.approx(wanted["peaks"], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("values", "how", "mu", "events"),
+    [
+        ([1.0, 1.0, 1.0, 0.5], "hold", 2.0, 0),  # at its limit all the time
+        ([0.0, 0.25, 0.5, 0.5, 0.375, 0.5, -0.5, -0.5, 0.0] * 20, "hold", 1.0, 0),
+        ([0.0, 0.3, 0.8, 1.0, 0.8, 0.3, 0.0], "cubic", 2.0, 0),  # the largest value is that of a sample
+        ([0.0, 0.3, 1.0, 0.95, 0.8, 0.3, 0.0], "cubic", 2.0, 2),  # the spline exceeds it between samples
+    ],
+)
+def test_a_limit_that_is_touched_holds(values, how, mu, events):
+    record = fm.Record(values, 0.25, quantity="force", interpolation=how)
+    system = fm.System(contacts=[fm.Contact("fixed-wall", 1)])
+    ds = fm.history(system, record, beta=0.5, mu=mu)
+    assert ds.events.item() == events
+    if not events:
+        assert ds.x_max.item() == 0.0

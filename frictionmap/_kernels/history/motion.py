@@ -10,10 +10,10 @@ from ..compiler.packed import packed
 from ..general.counts import COUNT_ROWS
 from ..general.crossings import NONE, value_at
 from ..general.follow import count_time, pass_event, prepare
-from ..general.laws.coulomb import first_event
+from ..general.laws.coulomb import first_event, watched_slope
 from ..general.laws.elastic import rest_springs
 from ..general.laws.kinds import has_constraint
-from ..general.pattern import BOX_ROWS, PARTICIPATES, settle, slide_velocity
+from ..general.pattern import BOX_ROWS, PARTICIPATES, settle, slide_velocity, stop_exactly
 from ..general.problem import PIECE_TERMS, SIZE, TURN, F, H, Motion, P, Q, Row, force_row, normal_row
 from ..general.record import clear_record
 from ..general.row import make_motion, make_row, set_channels, set_interval
@@ -28,7 +28,7 @@ RESOLVED, RINGING, CREEPING, TOO_MANY_EVENTS, RECORD_TOO_SHORT, UNDETERMINED = 0
 #: Events in an interval at most: more are chattering.
 _MOST_EVENTS = 2000
 
-#: A force within this share of its limit at a sample is at it: the load after the sample decides.
+#: A force within this share of its limit is at it.
 _AT_LIMIT = 1e-14
 
 #: A velocity at the start within this share of its terms is rest.
@@ -79,38 +79,49 @@ def make_memory(problem, watched, wanted):
 
 
 @kernel
-def _is_at_limit(problem, friction, motion, j, side, end):
-    """Whether the force of a contact is at its limit at the end of the interval, to rounding."""
-    force = value_at(motion.series, force_row(problem, j), end)
-    limit = friction.static[j] * value_at(motion.series, normal_row(problem, j), end)
-    return abs(limit - side * force) <= _AT_LIMIT * abs(limit)
+def _touches(problem, friction, motion, event, end):
+    """Whether a force reaches its limit at an event and does not exceed it by more than rounding.
+
+    It then neither rises above the limit at the event nor is above it half way to the end, and there.
+    """
+    x, j, side = event
+    rate = -watched_slope(problem, friction, motion, x, j, side)
+    size = friction.static[j] * value_at(motion.series, normal_row(problem, j), x)
+    if rate * (end - x) > _AT_LIMIT * size:
+        return False
+    for at in (0.5 * (x + end), end):
+        force = value_at(motion.series, force_row(problem, j), at)
+        limit = friction.static[j] * value_at(motion.series, normal_row(problem, j), at)
+        if side * force - limit > _AT_LIMIT * abs(limit):
+            return False
+    return True
 
 
 @kernel
-def _next_event(problem, friction, motion, end, sample):
+def _next_event(problem, friction, motion, end):
     """Return (x, contact, side) of the first event up to `end`; x = NONE without one.
 
-    sample : whether the slope of the load may change at the end, so that a limit that is reached there to
-        rounding is not yet exceeded
+    A limit that a force touches is no event: at a sample the slope of the load after it decides, and a
+    constant force at its limit holds.
     """
     found, contact, side = NONE, -1, 0
     for j in range(motion.sense.size):
         x, of = first_event(problem, friction, motion, j)
         if x < found and x <= end:
-            if sample and of != 0 and x > 0.0 and _is_at_limit(problem, friction, motion, j, of, end):
+            may_touch = of != 0 and motion.fresh[j] == 0
+            if may_touch and _touches(problem, friction, motion, (x, j, of), end):
                 continue
             found, contact, side = x, j, of
     return found, contact, side
 
 
 @kernel
-def _cross(problem, friction, memory, kept, sample, jumped, listed):
+def _cross(problem, friction, memory, kept, jumped, listed):
     """Follow the motion by its series through one interval, or an equal part of one.
 
     Parameters
     ----------
     problem, friction, memory, kept : see `follow_record`; the polynomials are in `row.loads`
-    sample : whether the part ends at a sample
     jumped : whether the load has jumped at the beginning
     listed : whether the states at events are kept
 
@@ -128,7 +139,7 @@ def _cross(problem, friction, memory, kept, sample, jumped, listed):
         expand(problem, row, friction, x * h, 0 if x == 0.0 else -1, motion, True)
         if listed and (k > 0 or jumped):
             keep_present(problem, row, motion, x, 0.0, kept)
-        event = _next_event(problem, friction, motion, rest, sample)
+        event = _next_event(problem, friction, motion, rest)
         step = min(event[0], rest)
         if step > 0.0:
             keep_step(problem, row, motion, x, step, kept)
@@ -146,6 +157,8 @@ def _cross(problem, friction, memory, kept, sample, jumped, listed):
         x += step
         if not pass_event(problem, row, friction, x * h, motion, memory.box, counts, event, False):
             return UNDETERMINED
+        set_channels(problem, row, x * h, -1, motion)
+        stop_exactly(problem, row, motion)  # the rounding error of what `settle` took away
         list_changes(row, motion, before, x, kept)
     return TOO_MANY_EVENTS
 
@@ -290,7 +303,7 @@ def _follow_interval(problem, friction, memory, course, kept, k, jump, listed):
         row, motion, counts = memory.row, memory.motion, memory.counts
         if by_tables and pass_by_tables(problem, row, friction, motion, counts, kept, tables):
             continue
-        code = _cross(problem, friction, memory, kept, part == parts - 1, jumped, listed)
+        code = _cross(problem, friction, memory, kept, jumped, listed)
         if code != RESOLVED:
             return code
     return RESOLVED

@@ -176,8 +176,8 @@ def _check_frequencies(fit: LoopFit, found: Errors) -> None:
     alike = float(np.abs(found.correlation[MASS, SPRING]))
     if fit.problem.free[[MASS, SPRING]].all() and alike > _ALIKE:
         raise InputError(
-            "parallel_stiffness and mass are not identifiable: at one frequency w only k_p - m w^2 shows; "
-            "hold known.mass, or move the damper at a second frequency as well"
+            "cannot identify parallel_stiffness and mass together: not identifiable at one frequency w, "
+            "which shows only k_p - m w^2; hold known.mass, or move the damper at a second frequency, too"
         )
 
 

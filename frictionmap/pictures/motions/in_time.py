@@ -112,8 +112,8 @@ def plot_history(
         check_holds(ds, ("x", "friction", "direction", "drive"), "its motion")
     elif ds.sizes["beta"] == 1:
         raise InputError(
-            "cannot draw several motions with one friction: choose one, such as ds.isel(record=[0]), or give "
-            "several values of beta"
+            "cannot draw several motions with one friction: their peaks have no axis; choose one, such as "
+            "ds.isel(record=[0]), or follow them with several values of beta"
         )
     count = 3 if single else 1
     if ax is None:

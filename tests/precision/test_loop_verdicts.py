@@ -194,3 +194,20 @@ def test_descent_finds_least_sums() -> None:
     np.testing.assert_allclose(held.values, [-1.2, 1.44], atol=1e-4)
     above = descend(task._replace(lowest=np.array([-np.inf, 1.5])), np.array([-1.2, 2.0]), 200)
     assert above.values[1] > 1.5
+
+
+@pytest.mark.parametrize(
+    ("changed", "warnings"),
+    [
+        ({"mu": 1.1}, "mu would explain more of the force: add mu to free"),
+        ({"factor_1": 1.2, "factor_2": 1.4}, ""),
+        ({}, ""),
+    ],
+)
+def test_static_friction_beside_a_speed_law(changed: dict[str, float], warnings: str) -> None:
+    """The contact breaks away at max(mu, g(V)) F."""
+    short = LAW._replace(truth={**LAW.truth, **changed}, length=3.2)
+    ds = fitted(short, [name for name in short.truth if name != "mu"])
+    assert ds.attrs["warnings"] == warnings
+    others = {name: value for name, value in short.truth.items() if name != "mu"}
+    assert max(abs(one) for one in deviations(ds, others).values()) < 4.0

@@ -18,10 +18,6 @@ _REFINED, _STEPS = 4, 60
 #: Forces whose residuals are smaller [N] are exact: sums of them are rounding.
 _EXACT = 1e-9
 
-#: Growth of the sum by which a break-away is another one than that of the law: three standard errors of one
-#: unknown.
-_WORSE = 9.0
-
 #: Rounds in which the noise of both channels is found.
 _ROUNDS = 3
 
@@ -68,18 +64,6 @@ def fit_loop(begin: Begun, held: np.ndarray) -> LoopFit:
     found = [descend(task, one.values, _STEPS) for one in begin.starts[:_REFINED]]
     best = min(found, key=lambda one: one.sum)
     return LoopFit(test, begin.layout, usable(task, best), best)
-
-
-def by_law(fit: LoopFit) -> LoopFit:
-    """The fit in which the contact breaks away where (L1) says, if that explains the force as well."""
-    if not fit.test.break_seen:
-        return fit
-    test = fit.test._replace(break_seen=False)
-    task = problem(test, fit.layout, fit.problem.free[: test.named])
-    best = descend(task, fit.solution.values, _STEPS)
-    if best.sum > fit.solution.sum + _WORSE:
-        return fit
-    return LoopFit(test, fit.layout, usable(task, best), best)
 
 
 def settled(

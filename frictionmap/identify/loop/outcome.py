@@ -11,7 +11,7 @@ from ..statistics.least_squares import Errors, Problem, errors, inflation, undet
 from ..statistics.weights import estimated_weights
 from .branches import motion
 from .cautions import Channels, cautions, channels
-from .fit import Begun, LoopFit, by_law, fit_loop, settled
+from .fit import Begun, LoopFit, fit_loop, settled
 from .held import is_rigid, least_stiffness, stuck_fit
 from .problem import (
     ASYMMETRY,
@@ -86,12 +86,9 @@ def without_slip(begin: Begun, held: np.ndarray) -> Outcome:
 
 def slipping(begin: Begun, held: np.ndarray, named: list[str]) -> Outcome:
     """The estimates of a test in which the contact slips."""
-    fit, static = fit_loop(begin, held), None
+    fit = fit_loop(begin, held)
     fit = settled(fit.test, fit.layout, fit.problem.free[: fit.test.named], fit.solution)
-    if np.isnan(held[MU]):
-        static = static_friction(fit)
-    else:
-        fit = by_law(fit)
+    static = static_friction(fit) if np.isnan(held[MU]) else None
     _check_slips(fit, held)
     rigid = bool(np.isnan(held[STIFFNESS])) and is_rigid(fit)
     least = least_stiffness(fit) if rigid else None

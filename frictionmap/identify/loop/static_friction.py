@@ -71,10 +71,9 @@ def _branches(fit: LoopFit) -> list[_Branch]:
             slopes[FRICTION] -= share / element.friction
             return float(share + way * _REACH * np.sqrt(max(slopes @ covariance @ slopes, 0.0)))
 
-        result.append(
-            _Branch(
-                limit(here[first - 1], -1.0) if first else -np.inf,
-                limit(here[last], 1.0) if last < here.size else np.inf,
-            )
-        )
+        before = limit(here[first - 1], -1.0) if first else -np.inf
+        after = limit(here[last], 1.0) if last < here.size else np.inf
+        # where g(V) is larger than mu, it is g(V) that the spring's force reaches
+        reached = float(g[here[min(first, here.size - 1)]])
+        result.append(_Branch(before if before > reached else -np.inf, after if after > reached else np.inf))
     return result

@@ -10,6 +10,7 @@ from ..statistics.levels import CHANCE
 from .descent import descend
 from .fit import LoopFit
 from .problem import BACKLASH, MU, NAMES, modelled_force, problem
+from .static_friction import static_friction
 
 VERDICTS = {
     "friction": "friction in a contact with a spring",
@@ -104,6 +105,9 @@ def missing(fit: LoopFit, named: list[str]) -> str:
 
 
 def _break_elsewhere(fit: LoopFit) -> float:
-    """Fall of the sum, over chance, if each branch slips from where its force shows it."""
+    """Fall of the sum, over chance, if each branch slips from where its force shows it, and not at mu."""
+    shown = static_friction(fit)
+    if fit.test.break_seen and shown.lower <= max(fit.solution.values[MU], 1.0) <= shown.upper:
+        return 0.0
     by_law, seen = (descend(_task(fit, way), fit.solution.values, _STEPS).sum for way in (False, True))
     return (by_law - seen) / float(chdtri(fit.layout.branches, CHANCE))

@@ -204,10 +204,26 @@ def test_descent_finds_least_sums() -> None:
         ({}, ""),
     ],
 )
-def test_static_friction_beside_a_speed_law(changed: dict[str, float], warnings: str) -> None:
+def test_static_friction_with_a_speed_law(changed: dict[str, float], warnings: str) -> None:
     """The contact breaks away at max(mu, g(V)) F."""
     short = LAW._replace(truth={**LAW.truth, **changed}, length=3.2)
     ds = fitted(short, [name for name in short.truth if name != "mu"])
     assert ds.attrs["warnings"] == warnings
     others = {name: value for name, value in short.truth.items() if name != "mu"}
     assert max(abs(one) for one in deviations(ds, others).values()) < 4.0
+
+
+def test_noise_of_turning_points_is_no_slip() -> None:
+    """With this noise a fit whose displacement is held slips for some samples at the extremes, at 48 N."""
+    test = SINE._replace(actuator=Actuator(0.12, 0.6))
+    assert verdict_of(fitted(test, PLAIN, seed=10)) == "no_slip"
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_slip_near_the_extremes_is_found(seed: int) -> None:
+    """F/kt is 0.3 mm."""
+    test = SINE._replace(actuator=Actuator(0.33, 0.6))
+    ds = fitted(test, PLAIN, seed)
+    assert float(ds["slip_share"]) < 0.3
+    assert verdict_of(ds) == "friction"
+    assert max(abs(one) for one in deviations(ds, test.truth).values()) < 4.0

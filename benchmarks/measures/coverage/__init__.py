@@ -22,7 +22,7 @@ import numpy as np
 
 from ...report.quoted_coverage import HEADER, coverage_notes, coverage_rows
 from ...report.record import machine, save, table
-from . import decays, forced, joint, records, sensors, sweeps
+from . import decays, forced, joint, loops, records, sensors, sweeps
 from .case import SEEDS, Trial, attempt
 from .counting import STATED, row
 from .figure import draw
@@ -34,6 +34,7 @@ KINDS = {
     "record": records.CASES,
     "sweep": sweeps.CASES,
     "joint": joint.CASES,
+    "loop": loops.CASES,
 }
 
 #: Processes at a time, and fits that one of them is given at once.

@@ -8,7 +8,7 @@ import numpy as np
 
 import frictionmap as fm
 
-from .case import SEEDS, Case, Made
+from .case import Case, Made
 
 #: Small steps between two samples; their error at turning points is 1e-3 of the noise at most.
 _FINE = 20
@@ -183,9 +183,16 @@ TESTS = {
     ),
 }  # fmt: skip
 
-#: Fits of a test in which every value of mu is a fit of its own are slow.
-_FEWER = 200
+#: Seeds of the tests, as many as three minutes of a shared processor fitted; of the others, 20.
+_SEEDS = {
+    "static friction": 90,
+    "spring beside, and drift": 40,
+    "nearly rigid contact": 35,
+    "play, and friction that depends on the direction": 30,
+    "sine": 30,
+    "velocity": 25,
+    "speed law, rising frequency": 15,
+    "mass and delay, two frequencies": 15,
+}
 
-CASES = tuple(
-    Case(name, partial(_made, test=test), SEEDS if name == "sine" else _FEWER) for name, test in TESTS.items()
-)
+CASES = tuple(Case(name, partial(_made, test=test), _SEEDS.get(name, 20)) for name, test in TESTS.items())

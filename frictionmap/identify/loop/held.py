@@ -26,6 +26,9 @@ from .problem import (
 #: Growth of the sum by which friction is found: three standard errors of each of its two unknowns.
 _FOUND = 18.0
 
+#: Share of the samples that slip, beyond which a contact is not taken for one that never slips.
+_MOST_SLIPS = 0.3
+
 #: Growth of the sum at a one-sided limit of 95 %.
 _ONE_SIDED = 2.71
 
@@ -52,6 +55,21 @@ def nothing_slips(begin: Begun, held: np.ndarray) -> bool:
     rest = test.force - matrix @ np.linalg.lstsq(matrix, test.force)[0]
     alone, least = float(rest @ rest), begin.starts[0].sum
     return alone - least < _FOUND * least / test.time.size
+
+
+def is_stuck(fit: LoopFit, begin: Begun, held: np.ndarray) -> bool:
+    """Whether a fit without slip explains both channels as well as one that slips at the extremes.
+
+    With the displacement of its own fit, `nothing_slips`, an error of a turning point shifts the force of a
+    branch, which slip there would do as well.
+    """
+    if modelled_force(fit.test, fit.layout, fit.solution.values).slips.mean() > _MOST_SLIPS:
+        return False
+    stuck = stuck_fit(begin, held)
+    parts = np.split(stuck.solution.residual, 2)
+    scales = stuck.test.sigma_moved / fit.test.sigma_moved, stuck.test.sigma_force / fit.test.sigma_force
+    total = sum(scale**2 * float(part @ part) for scale, part in zip(scales, parts, strict=True))
+    return total - fit.solution.sum < _FOUND
 
 
 def stuck_fit(begin: Begun, held: np.ndarray) -> LoopFit:

@@ -91,14 +91,17 @@ def loop(
     xarray.Dataset
         On parameter: estimate, standard_error, lower and upper (95 %), `known`, unit; `correlation`; on
         sample: time, motion, motion_model, data, model and residual of the force; scalars `sigma_force`,
-        `sigma_motion`, `slip_share`, `branches`, `verdict`.  Attribute `warnings`.  Of mu there is an
-        interval only.  What the test does not determine is NaN, with a bound on one side where there is one.
+        `sigma_motion`, `slip_share`, `branches`, `slips` (branches that slip), `condition` (least over
+        largest singular value of the scaled slopes), of motion and force `residual_correlation_` and
+        `reduced_chi_square_` (over the noise from sample to sample), `verdict`; if nothing slips
+        `stiffness_sum` and `friction_lower`.  Attribute `warnings`.  Of mu there is an interval only.  What
+        the test does not determine is NaN, with a bound on one side where there is one.
 
     Raises
     ------
     InputError
-        An argument is invalid; nothing moves back; parameters cannot be separated; the force acts with the
-        motion instead of against it.
+        An argument is invalid; nothing moves back; the contact slips in one or two branches only; parameters
+        are not identifiable; the force acts with the motion instead of against it.
 
     Notes
     -----

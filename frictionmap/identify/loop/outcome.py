@@ -12,7 +12,7 @@ from ..statistics.weights import estimated_weights
 from .branches import motion
 from .cautions import Channels, cautions, channels
 from .fit import Begun, LoopFit, fit_loop, settled
-from .held import is_rigid, least_stiffness, stuck_fit
+from .held import is_rigid, is_stuck, least_stiffness, stuck_fit
 from .problem import (
     ASYMMETRY,
     BACKLASH,
@@ -88,6 +88,8 @@ def slipping(begin: Begun, held: np.ndarray, named: list[str]) -> Outcome:
     """The estimates of a test in which the contact slips."""
     fit = fit_loop(begin, held)
     fit = settled(fit.test, fit.layout, fit.problem.free[: fit.test.named], fit.solution)
+    if is_stuck(fit, begin, held):
+        return without_slip(begin, held)
     static = static_friction(fit) if np.isnan(held[MU]) else None
     _check_slips(fit, held)
     rigid = bool(np.isnan(held[STIFFNESS])) and is_rigid(fit)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from benchmarks.measures.coverage.loops import TESTS, Actuator, Damper, measured
+from benchmarks.measures.coverage.loops import TESTS, Actuator, Damper, marched, measured
 from frictionmap.errors import InputError
 from frictionmap.identify import loop
 from frictionmap.identify.loop.descent import descend
@@ -227,3 +227,17 @@ def test_slip_near_the_extremes_is_found(seed: int) -> None:
     assert float(ds["slip_share"]) < 0.3
     assert verdict_of(ds) == "friction"
     assert max(abs(one) for one in deviations(ds, test.truth).values()) < 4.0
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_first_branch_that_is_held_by_static_friction(seed: int) -> None:
+    """It ends 0.398 mm from its beginning: more than F/kt, less than mu F/kt, 0.32 and 0.4 mm."""
+    rng, fine = np.random.default_rng(seed), np.arange(17000) / 3400.0
+    u, v, _ = Actuator(2.0, 0.6).motion(np.arccos(-0.801), fine, 5.0)
+    force = marched(STATIC.truth, None, u, v)[::20] + 2.0
+    noise = [rng.normal(0.0, one, force.size) for one in STATIC.noise]
+    ds = loop(fine[::20], force + noise[1], displacement=u[::20] + noise[0], free=list(STATIC.truth))
+    assert ds.attrs["warnings"] == ""
+    others = {name: value for name, value in STATIC.truth.items() if name != "mu"}
+    assert max(abs(one) for one in deviations(ds, others).values()) < 4.0
+    assert float(ds.sel(parameter="mu")["lower"]) > 0.99 * 0.398 / 0.32

@@ -88,9 +88,10 @@ def forces(
             element, sense, w, np.abs(at.derivatives[1, here]), carried + ends[j + 1] - ends[j]
         )
         force[here], slopes[here] = _held(element, places, w, own)
-        if measured is not None and broke[j]:
+        if measured is not None:
             g = factor(element, np.abs(at.derivatives[1, here]))[0]
             slipping = _seen(measured[here], force[here], sense * _strength(element, sense) * g)
+            broke[j] = bool(slipping.any())
         slipping = slipping & (not hold)
         slips[here] = slipping
         late = here[slipping]

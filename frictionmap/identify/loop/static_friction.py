@@ -46,17 +46,17 @@ def static_friction(fit: LoopFit) -> Static:
 
 
 def _branches(fit: LoopFit) -> list[_Branch]:
-    """The limits of mu in every branch that slips, with the errors of the fit."""
+    """The limits of mu in every branch, with the errors of the fit."""
     test, values = fit.test, fit.solution.values
     places, element = places_of(test), element_of(test, values)
     at = motion(fit.layout, values[places.displacement :], test.time - values[DELAY])
-    held = forces(element, places, fit.layout, values, at, hold=True)
     measured = test.force - beside_contact(test, values, at)
+    held = forces(element, places, fit.layout, values, at, measured, hold=True)
     senses = np.sign(np.diff(values[places.displacement :][: fit.layout.branches + 1]))
     covariance = unscaled_covariance(fit.problem, fit.solution)
     g = factor(element, np.abs(at.derivatives[1]))[0]
     result = []
-    for j in np.flatnonzero(held.broke):
+    for j in np.unique(at.branch):
         here, sense = np.flatnonzero(at.branch == j), senses[j]
         strength = element.friction * (1.0 + sense * element.asymmetry)
         gain = (measured[here] - held.force[here]) ** 2 - (measured[here] - sense * strength * g[here]) ** 2

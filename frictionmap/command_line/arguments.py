@@ -291,10 +291,10 @@ def _takes_figure(sub: argparse.ArgumentParser) -> None:
     group.add_argument("--mass", metavar="LIST", type=_list_of(int), action=_Once, help=text)
     text = "friction ratios whose response curves are drawn, e.g. 0.2,0.5 (the nearest ones in the file)"
     group.add_argument("--beta", metavar="LIST", type=_list_of(float), action=_Once, help=text)
-    text = "mark a working point on a map or on boundaries"
-    group.add_argument("--point", metavar=("R", "BETA"), nargs=2, type=float, action=_Once, help=text)
+    text = "mark a working point on a map or on boundaries: ratios, or '4.2 Hz' '2 N' for a file with units"
+    group.add_argument("--point", metavar=("R", "BETA"), nargs=2, type=_ratio, action=_Once, help=text)
     text = "half-widths of the uncertainty of --point, drawn as a box"
-    group.add_argument("--box", metavar=("DR", "DBETA"), nargs=2, type=float, action=_Once, help=text)
+    group.add_argument("--box", metavar=("DR", "DBETA"), nargs=2, type=_ratio, action=_Once, help=text)
     text = "settings of matplotlib for this picture: fonts, lines, colours of quantities"
     group.add_argument("--style", metavar="FILE.mplstyle", type=Path, action=_Once, help=text)
 

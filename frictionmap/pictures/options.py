@@ -41,8 +41,8 @@ class FigureOptions(TypedDict, total=False):
     panels: int | Sequence[int]
     mass: int | Sequence[int]
     beta: float | Sequence[float]
-    point: tuple[float, float]
-    box: tuple[float, float]
+    point: tuple[float | str, float | str]
+    box: tuple[float | str, float | str]
 
 
 @dataclass(frozen=True)
@@ -59,8 +59,8 @@ class Options:
     panels: tuple[int, ...] = ()
     mass: tuple[int, ...] = ()
     beta: tuple[float, ...] = ()
-    point: tuple[float, float] | None = None
-    box: tuple[float, float] | None = None
+    point: tuple[float | str, float | str] | None = None  # r and beta, or frequency and force with units
+    box: tuple[float | str, float | str] | None = None
 
     def columns(self, wanted: int) -> int:
         """Number of panels side by side: as many as wanted, or as the width has room for."""
@@ -165,10 +165,18 @@ def _limits(name: str, value: object) -> tuple[float, float]:
     return low, high
 
 
-def _half_widths(name: str, value: object) -> tuple[float, float]:
-    widths = _two(name, value)
-    if min(widths) < 0.0:
-        raise InputError(f"{name} must be half-widths >= 0; got {widths[0]:g}, {widths[1]:g}")
+def _with_units(name: str, value: object) -> tuple[float | str, float | str]:
+    """Two finite numbers, or texts with units, which are converted where the dataset is known."""
+    if isinstance(value, (list, tuple)) and len(value) == 2 and any(isinstance(one, str) for one in value):
+        first, second = (one if isinstance(one, str) else checks.number(one, name) for one in value)
+        return first, second
+    return _two(name, value)
+
+
+def _half_widths(name: str, value: object) -> tuple[float | str, float | str]:
+    widths = _with_units(name, value)
+    if any(not isinstance(one, str) and one < 0.0 for one in widths):
+        raise InputError(f"{name} must be half-widths >= 0; got {widths[0]}, {widths[1]}")
     return widths
 
 
@@ -199,6 +207,6 @@ _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     "panels": _counted,
     "mass": _counted,
     "beta": _numbers,
-    "point": _two,
+    "point": _with_units,
     "box": _half_widths,
 }

@@ -385,3 +385,25 @@ def test_axes_of_python_in_units():
     )
     ds = fm.sweep(system, [0.5], [0.5], units=units, axes={"contacts[1].stiffness": ["250 N/mm", "500 N/mm"]})
     np.testing.assert_array_equal(ds.contacts_1_stiffness.values, [0.5, 1.0])
+
+
+# A working point in a picture
+
+
+def test_a_working_point_in_units_is_that_of_its_ratios():
+    units = fm.Units(natural_frequency="4 Hz", load="10 N")
+    ds = fm.sweep(fm.System(), ["2 Hz", "4 Hz", "6 Hz"], ["0 N", "8 N"], units=units)
+    legends = []
+    for point, box in ((("3 Hz", "5 N"), ("0.4 Hz", "1 N")), ((0.75, 0.5), (0.1, 0.1))):
+        (ax,) = fm.plot_regimes(ds, point=point, box=box)
+        legends.append([text.get_text() for text in ax.figure.legends[0].get_texts()])
+    assert legends[0] == legends[1]
+    assert "working point: r = 0.75, β = 0.5" in legends[0]
+
+
+def test_a_working_point_in_units_needs_those_of_the_file():
+    ds = fm.sweep(fm.System(), [0.5, 1.0], [0.0, 0.8])
+    with pytest.raises(InputError, match=r"^cannot convert point = '3 Hz' .*natural_frequency.*units\.load"):
+        fm.plot_regimes(ds, point=("3 Hz", "5 N"))
+    with pytest.raises(InputError, match=r"^point must be a number"):
+        fm.plot_regimes(ds, point=("much", 0.5))

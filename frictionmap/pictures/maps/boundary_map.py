@@ -239,7 +239,7 @@ def plot_boundaries(
         handles = _area_handles(all(exact))
     top = limits[1] if (limits := current().ylim) else top
     for panel_ax, panel in zip(axes, panels, strict=True):
-        handles += [*draw(panel_ax, panel, r, top), *mark_point(panel_ax)]
+        handles += [*draw(panel_ax, panel, r, top), *mark_point(panel_ax, ds)]
     handles = distinct(handles)
     if ax is None:
         figure = axes[0].figure

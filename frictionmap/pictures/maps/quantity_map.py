@@ -236,7 +236,7 @@ def plot_quantity(
     scale, ends = _scale(name, panels, log)
     handles: list[Handle] = []
     for panel_ax, panel in zip(axes, panels, strict=True):
-        handles += [*_draw(panel_ax, panel, grids, scale), *mark_point(panel_ax)]
+        handles += [*_draw(panel_ax, panel, grids, scale), *mark_point(panel_ax, ds)]
     handles = [*_class_handles(panels), *distinct(handles)]
     figure = axes[0].figure
     assert isinstance(figure, Figure)

@@ -312,7 +312,7 @@ def plot_regimes(
     cells = [cells_of(panel, by, grids) for panel in panels]
     others: list[Handle] = []
     for panel_ax, panel, part in zip(axes, panels, cells, strict=True):
-        others += draw_map(panel_ax, panel, part) + _ring(panel_ax, part) + mark_point(panel_ax)
+        others += draw_map(panel_ax, panel, part) + _ring(panel_ax, part) + mark_point(panel_ax, ds)
     handles = _class_handles(panels, cells) + distinct(others)
     if ax is None:
         figure = axes[0].figure

@@ -1,14 +1,22 @@
 """A working point on a map, and the box of its uncertainty."""
 
-from typing import Any
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
 
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
+from ... import checks
+from ...datasets.labels import SCALES
 from ...errors import InputError
+from ...units.axes import KINDS, ratios, require
+from ...units.scales import Scales
 from ..options import current
 from ..panels import Handle, halo
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _MARK: dict[str, Any] = {
     "marker": "X", "markersize": 9.0, "markerfacecolor": "white", "markeredgecolor": "black",
@@ -17,11 +25,30 @@ _MARK: dict[str, Any] = {
 _BOX: dict[str, Any] = {"facecolor": "none", "edgecolor": "black", "linewidth": 1.1}
 
 
-def mark_point(ax: Axes) -> list[Handle]:
+def _ratios(given: tuple[float | str, float | str], name: str, ds: "xr.Dataset") -> tuple[float, float]:
+    """r and beta of two numbers that may have units, over the reference values of a dataset."""
+    frequency, force = (_exact(ds.attrs.get(SCALES[kind])) for kind in KINDS.values())
+    scales = Scales(frequency, force, None)
+    require(scales, **{name: ("frequency", given[0]), f"{name}, beta": ("force", given[1])})
+    found = (
+        ratios(one, name, KINDS[axis], scales) if isinstance(one, str) else [one]
+        for axis, one in zip(KINDS, given, strict=True)
+    )
+    first, second = (checks.number(one[0] if isinstance(one, list) else one, name) for one in found)
+    return first, second
+
+
+def _exact(value: float | None) -> Fraction | None:
+    return None if value is None else Fraction(float(value))
+
+
+def mark_point(ax: Axes, ds: "xr.Dataset") -> list[Handle]:
     """Draw the point and the box of the options, if given; return entries for the legend."""
-    point, box = current().point, current().box
-    if point is None:
+    marked, around = current().point, current().box
+    if marked is None:
         return []
+    point = _ratios(marked, "point", ds)
+    box = None if around is None else _ratios(around, "box", ds)
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
     if not (left <= point[0] <= right and low <= point[1] <= high):
         raise InputError(

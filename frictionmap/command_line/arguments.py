@@ -42,6 +42,7 @@ _TEMPLATES = {
     "elastic": "a contact with a spring",
     "belt": "a mass on a belt",
     "design": "one mass, with design questions",
+    "history": "motions in time under a pulse, and its spectrum",
 }
 
 #: Shells that shtab knows; repeated here as the above, and compared by the same test.

@@ -481,15 +481,18 @@ def _init(options: Options) -> None:
         texts = {path: text, path.parent / f"{options.rig}.csv": data}
         then = f"frictionmap identify {path}"
     else:
-        from ..files.template import short_configuration, starting_configuration
+        from ..files.template import short_configuration, short_motion, starting_configuration
 
         if options.full:
             text = starting_configuration(path.stem, options.contact or CONTACTS[0], options.units)
         else:
             kind = options.contact or options.template or CONTACTS[0]
-            text = short_configuration(path.stem, kind, not options.ratios)
+            write = short_motion if kind == "history" else functools.partial(short_configuration, kind=kind)
+            text = write(path.stem, in_units=not options.ratios)
         texts = {path: text}
         then = f"frictionmap explore {path}, or frictionmap map {path} && frictionmap plot {path.stem}.nc"
+        if options.template == "history":
+            then = f"frictionmap history {path} && frictionmap plot {path.stem}-history.nc"
     with contextlib.ExitStack() as places:
         outputs = [
             places.enter_context(claimed(place, options.overwrite, name="NAME.toml")) for place in texts

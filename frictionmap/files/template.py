@@ -114,6 +114,34 @@ band = [0.3, 2.2]
 """,
 }
 
+_MOTION_HEAD = """\
+# frictionmap history {name}.toml && frictionmap plot {name}-history.nc
+# frictionmap spectrum {name}.toml && frictionmap plot {name}-spectrum.nc
+"""
+
+#: A pulse, the motions under it, and its spectrum.
+_MOTIONS = {
+    True: """\
+[record]
+unit = "g"
+pulse = { kind = "half-sine", amplitude = "0.4 g", duration = "0.05 s" }      # or file = "elcentro.at2"
+[history]
+friction = ["0.05 g", "0.1 g"]    # friction force over the mass
+[spectrum]
+period = { start = "0.02 s", stop = "0.2 s", num = 10 }
+friction = ["0.05 g", "0.1 g"]
+""",
+    False: """\
+[record]
+pulse = { kind = "half-sine", amplitude = 1.0, duration = 6.0 }      # time in 1/omega_1
+[history]
+beta = [0.1, 0.2]
+[spectrum]
+period = { start = 2.0, stop = 12.0, num = 10 }
+friction = [0.1, 0.2]
+""",
+}
+
 #: What P is, by whether the base moves.
 _LOADS = {
     True: 'base_amplitude = "0.2 mm"         # the base moves by 0.2 mm cos(omega t)',
@@ -194,6 +222,14 @@ def short_configuration(name: str, kind: str = "fixed-wall", in_units: bool = Tr
     if kind == "design":
         lines.append(_QUESTIONS.format(limit='"0.5 mm"' if in_units else "2.5"))
     return "".join(lines)
+
+
+def short_motion(name: str, in_units: bool = True) -> str:
+    """Return the text of a short configuration of motions in time and of a spectrum."""
+    short = SHORT["joined-base-wall"]
+    lines = [_MOTION_HEAD.format(name=name), 'title = "One mass under a pulse of its base"\n', "[system]\n"]
+    lines += [f"{line}\n" for line in short.lines(in_units)]
+    return "".join([*lines, _MOTIONS[in_units]])
 
 
 def section_text(section: str, keys: tuple[Key, ...], said: Mapping[str, str], what: str = "") -> str:

@@ -34,8 +34,8 @@ SHORTER = {
 SLIPS = {
     "a setting": ("outputs=[", "output=["),
     "an output": ('"also_reachable"', '"also_reachble"'),
-    "a contact": ('"fixed-wall"', '"fixed_wall"'),
-    "an argument": ("damping_ratios=0.01)\nds", "damping_ratio=0.01)\nds"),
+    "a contact": ('"between-masses"', '"between_masses"'),
+    "an argument": ("damping_ratios=0.01\n)\nevery", "damping_ratio=0.01\n)\nevery"),
     "a start": ("mu=1.2,", 'mu=1.2, start="moveing",'),
     "a name": ("fm.boundaries", "fm.boundarys"),
     "a system": ("fm.response(system", "fm.response(ds"),

@@ -108,7 +108,19 @@ def test_every_template_runs_with_every_command(options, coarse, tmp_path, monke
 def test_templates_of_the_command_line_are_all_of_them():
     actions = subcommands(build_parser()).choices["init"]._actions
     kinds = {one.const for one in actions if one.dest == "template"}
-    assert {*CONTACTS, *kinds} == {*SHORT, "design"}
+    assert {*CONTACTS, *kinds} == {*SHORT, "design", "history"}
+
+
+@pytest.mark.parametrize("numbers", ["--units", "--ratios"])
+def test_the_template_of_motions_runs_with_both_commands(numbers, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "--history", numbers]) == 0
+    assert "next: frictionmap history map.toml" in capsys.readouterr().out
+    text = (tmp_path / "map.toml").read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 18
+    for command in ("history", "spectrum"):
+        assert main([command, "map.toml", "--quiet"]) == 0, capsys.readouterr().err
+        assert main(["plot", f"map-{command}.nc", "--quiet"]) == 0
 
 
 @pytest.mark.parametrize("kind", SHORT)

@@ -118,6 +118,25 @@ DIMENSIONLESS = {
     "solver.cycles", "solver.tolerance", "solver.steps", "curves.harmonics",
     "design.mu", "design.second", "design.ratio[]", "design.spread", "design.quantile",
     "design.response.mass", "design.response.contact",
+    "record.pulse.rise", "record.mass", "record.vector[]", "record.scale", "record.scale[]",
+    *(f"record.generate.{name}" for name in ("seed", "count", "damping", "filter_damping")),
+    "history.mu", "history.mu[]", "history.samples", "spectrum.mu", "spectrum.mu[]", "spectrum.damping",
+}  # fmt: skip
+
+#: Numbers of records and motions that may have units, which the tests of records compare.
+OF_MOTIONS = {
+    *(f"record.pulse.{name}" for name in ("amplitude", "duration")),
+    *(f"record.sweep.{name}" for name in ("from", "to", "duration", "amplitude")),
+    *(f"record.generate.{name}" for name in (
+        "duration", "dt", "rms", "peak", "frequency", "filter_frequency", "wind_speed")),
+    "record.peak", "history.beta", "history.friction", "spectrum.period", "spectrum.friction",
+    "spectrum.beta",
+}  # fmt: skip
+
+#: Numbers in the unit that the record has.
+OF_RECORD = {
+    "record.dt", "record.after", "record.generate.level", "record.generate.density",
+    "history.start.x", "history.start.v",
 }  # fmt: skip
 
 #: Entries of matrices: their units are those of `natural_frequency` and `stiffness` = "model".
@@ -130,7 +149,9 @@ def leaves(schema, name):
         found = [one for part in schema["anyOf"] for one in leaves(part, name)]
         return [(key, any(unit for other, unit in found if other == key)) for key, _ in found]
     if schema.get("type") == "object":
-        return [one for key, part in schema["properties"].items() for one in leaves(part, f"{name}.{key}")]
+        return [
+            one for key, part in schema.get("properties", {}).items() for one in leaves(part, f"{name}.{key}")
+        ]
     if schema.get("type") == "array":
         items = [one for part in schema.get("prefixItems", ()) for one in leaves(part, f"{name}[]")]
         return items or leaves(schema["items"], f"{name}[]")
@@ -150,10 +171,11 @@ def test_every_number_is_in_the_table_or_has_no_dimension():
     dimensional = {
         *(f"system.{key}" for key in of_system), *(f"grid.{key}" for key in KINDS),
         *(f"design.{key}" for key in OF_DESIGN), *(f"units.{key}" for key in UNIT_KINDS),
+        *OF_MOTIONS,
     }  # fmt: skip
     for name, unit in all_leaves():
         own = re.sub(r"(\[\]|\.(start|stop|step|num|values))+$", "", name)
-        if own in ENTRIES or name.endswith(".num") or "dofs" in name:
+        if own in ENTRIES | OF_RECORD or name.endswith(".num") or "dofs" in name:
             continue
         own = name if name in DIMENSIONLESS else own
         assert (own in dimensional) != (own in DIMENSIONLESS), name

@@ -290,14 +290,13 @@ class System(Shown):
         self._set("contacts", check_contacts(self))
         self._check_contact()
         self._check_load()
+        if isinstance(self.matrices, Structure) and self.reduce is None:
+            self._set("matrices", full_matrices(self.matrices))
         self._set("_contact_system", contact_system(self))
         if isinstance(self.matrices, Structure):
-            self._set(
-                "matrices",
-                self._reduced(self.matrices, previous) if self.reduce else full_matrices(self.matrices),
-            )
-        if self.reduction is not None:
-            self._set("_contact_system", self._contact_system.at(self.reduction.reduced.rows))
+            reduction = self._reduced(self.matrices, previous)
+            self._set("matrices", reduced_matrices(reduction))
+            self._set("_contact_system", self._contact_system.at(reduction.reduced.rows))
         scale = self.frequency_scale
         if scale is None and self.reduction is not None:  # r does not depend on the reduction
             scale = self.reduction.first_frequency
@@ -374,15 +373,15 @@ class System(Shown):
             self._set("frequency_scale", checks.number(self.frequency_scale, "frequency_scale", above=0.0))
         self._set("stiffness_scale", checks.number(self.stiffness_scale, "stiffness_scale", above=0.0))
 
-    def _reduced(self, structure: Structure, previous: Reduction | None) -> Matrices:
+    def _reduced(self, structure: Structure, previous: Reduction | None) -> Reduction:
         """Reduce the structure; a previous reduction that fits is used again."""
         assert isinstance(self.reduce, Reduce)
         used = (self.dofs.numbers[row] for row in self._contact_system.rows)
         kept = tuple(sorted({*used, *self.reduce.keep}))
         asked = self.reduce, kept, self._contact_system.independent, self.excitation == "base"
         if previous is not None and previous.like(*asked):
-            return reduced_matrices(previous)
-        return reduced_matrices(reduce_structure(structure, *asked))
+            return previous
+        return reduce_structure(structure, *asked)
 
     def _check_rayleigh(self) -> None:
         if self.rayleigh is None:

@@ -184,6 +184,14 @@ def test_digits_left_out_of_a_file_leave_rigid_body_modes():
     np.testing.assert_allclose(found.beta_stick, exact.beta_stick, rtol=3e-8)  # ten times the digits
 
 
+def test_contacts_of_matrices_know_that_the_structure_is_free():
+    """What holds a place, a spring, is looked for in the checked matrices, from arrays or from a file."""
+    free, held = [[1.0, -1.0], [-1.0, 1.0]], [[1.1, -1.0], [-1.0, 1.0]]
+    for stiffness, expected in ((free, True), (held, False)):
+        system = fm.System(matrices={"M": np.eye(2), "K": stiffness}, load_mass=2)
+        assert system.contact_system.free is expected
+
+
 def test_matrices_and_chain_agree():
     chain = fm.System(mass_ratios=[1, 0.5], stiffness_ratios=[0, 1], damping_ratios=0.05, load_mass=2)
     given = fm.System(

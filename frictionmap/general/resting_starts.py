@@ -47,6 +47,20 @@ def _from_phase(problem: Problem, phase: np.ndarray) -> Problem:
     return problem._replace(phasors=np.ascontiguousarray(np.stack((turned.real, -turned.imag), axis=1)))
 
 
+def _moves_of_forces(squares: np.ndarray, chi: np.ndarray) -> np.ndarray:
+    """Displacements of the modes, (k, m), that change the force in a contact at rest by 1.
+
+    Rigid-body modes change no force.  Where no other mode moves the contact, it carries the load at any
+    place, and motions that begin at rest at all phases begin to slip at its limit, too.
+    """
+    elastic = squares > 0.0
+    if elastic.all():
+        return chi / squares
+    own = (chi[:, elastic] ** 2).sum(axis=1, keepdims=True)
+    scale = np.divide((chi**2).sum(axis=1, keepdims=True), own, out=np.zeros_like(own), where=own > 0.0)
+    return np.where(elastic, chi * scale / np.where(elastic, squares, 1.0), 0.0)
+
+
 def _at_limit(problem: Problem, contact: np.ndarray, friction: np.ndarray) -> np.ndarray:
     """Modes and velocities at tau = 0, (k, 2, m): the motion without friction, changed so that a contact is
     at rest and carries its static friction.
@@ -67,7 +81,8 @@ def _at_limit(problem: Problem, contact: np.ndarray, friction: np.ndarray) -> np
     force = problem.squares * states[:, 0] + damped - load @ problem.push.T
     carried = mass * ((chi * force).sum(axis=1) + square * (wall * bend).sum(axis=1))
     nu = 1.0 + (problem.normal[contact] * load).sum(axis=1)
-    states[:, 0] -= chi / problem.squares * (carried + (1.0 + _PAST) * friction * nu)[:, np.newaxis]
+    moves = _moves_of_forces(problem.squares, chi)
+    states[:, 0] -= moves * (carried + (1.0 + _PAST) * friction * nu)[:, np.newaxis]
     return np.ascontiguousarray(states)
 
 

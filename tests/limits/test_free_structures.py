@@ -40,6 +40,17 @@ def test_boundaries_of_a_block_do_not_depend_on_the_frequency():
     np.testing.assert_allclose(found.no_stop_end[0, :, 0], NO_STOP, rtol=1e-12)
 
 
+def test_static_friction_of_a_block():
+    """The force at a turn, cos(tau_0), must exceed mu beta; and no other motion goes on stopping below."""
+    mu = np.array([1.0, 1.3, 2.0])
+    found = fm.boundaries(BLOCK, [0.7], mu)
+    limit = 1.0 / np.sqrt(mu**2 + 0.25 * math.pi**2)
+    np.testing.assert_allclose(found.beta_lim[:, 0], limit, rtol=1e-12)
+    np.testing.assert_allclose(found.beta_stick[:, 0], 1.0 / mu, rtol=1e-14)
+    answer = fm.design.no_stop(BLOCK, [0.7, 1.6], mu=1.3)
+    assert answer.beta.item() == pytest.approx(limit[1], rel=1e-6)
+
+
 def test_continuous_motion_of_a_block():
     """Over half a period from the turn at t0: x = (cos t0 - cos t - beta t^2/2 + ...)/r^2."""
     r, beta = 0.8, 0.9 * NO_STOP

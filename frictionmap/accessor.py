@@ -11,6 +11,7 @@ import xarray as xr
 from . import checks, regimes
 from .datasets.labels import regime_of_choice
 from .errors import InputError
+from .model.html import Text
 
 if TYPE_CHECKING:
     from .pictures.options import FigureOptions
@@ -74,6 +75,22 @@ class FrictionAccessor:
         ds = self._ds
         cells = {key: ds[key].where(there) for key in ds.data_vars if set(there.dims) <= set(ds[key].dims)}
         return ds.assign(cells)
+
+    def summary(self) -> Text:
+        """Describe the dataset as `frictionmap info` does: its system, its axes, and the results in words.
+
+        An answer of `fm.design` is described by its friction, its peaks and its warnings.
+
+        Examples
+        --------
+        >>> import frictionmap as fm
+        >>> answer = fm.design.stuck(fm.System(damping_ratios=0.05), [0.5, 1.5])
+        >>> print(answer.frictionmap.summary().splitlines()[0])
+        Least friction that holds [design]
+        """
+        from .files.summary import describe_file
+
+        return Text(describe_file(self._ds))
 
     def plot(
         self, quantity: str | None = None, *, log: bool = False, **options: Unpack["FigureOptions"]

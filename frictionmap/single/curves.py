@@ -28,8 +28,8 @@ def plain_outputs(asked: CurveSettings) -> list[Output]:
 
 
 def cycle_variables(asked: CurveSettings) -> list[str]:
-    """Variables that are read from the results over a cycle."""
-    return [name for quantity in asked.quantities for name in VARIABLES[quantity]]
+    """Variables that are read from the results over a cycle; the others are recorded, see `RECORDED`."""
+    return [name for quantity in asked.quantities for name in VARIABLES.get(quantity, ())]
 
 
 def older_names(names: Collection[str]) -> dict[str, str]:

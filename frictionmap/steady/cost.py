@@ -13,7 +13,7 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from ..model.settings import CurveSettings, Solver
+from ..model.settings import RECORDED, CurveSettings, Solver
 from ..model.system import System
 from ..solvers.choose import engine_of
 from ..units.scales import Units
@@ -77,7 +77,8 @@ def memory_of_curves(
 
     sizes = {**counts, "dof": masses, "harmonic": settings.harmonics + 1, "part": 2}
     names = cycle_variables(settings)
-    variables = _also_in_si({*plain_outputs(settings), *names, *older_names(names)}, units)
+    recorded = {name for name in settings.quantities if name in RECORDED}
+    variables = _also_in_si({*plain_outputs(settings), *names, *older_names(names), *recorded}, units)
     return _memory(sizes, variables, quantity_request(names, settings.harmonics), "curves")
 
 

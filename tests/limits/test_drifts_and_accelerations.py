@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import frictionmap as fm
+from frictionmap.command_line.cli import main
 
 OUTPUTS = ("drift", "acceleration_amplitude", "base_force")
 SOLVER = fm.Solver(outputs=("regime", *OUTPUTS))
@@ -75,6 +76,20 @@ def test_curves_have_the_values_of_maps(name):
     curves = fm.curves(system, [0.8], [beta], mu, quantities=OUTPUTS)
     for output in OUTPUTS:
         np.testing.assert_allclose(curves[output], cells[output], rtol=1e-11, atol=1e-13)
+
+
+def test_curves_from_the_command_line(tmp_path):
+    text = (
+        "[system]\ndamping_ratios = 0.05\n[grid]\nr = [0.5, 0.8]\nbeta = [0.1, 0.5]\n"
+        '[curves]\nquantities = ["drift", "base_force"]\n'
+    )
+    (tmp_path / "one.toml").write_text(text)
+    target = tmp_path / "one.nc"
+    assert main(["curves", str(tmp_path / "one.toml"), "-o", str(target)]) == 0
+    found = fm.open(target)
+    cells = fm.sweep(fm.System(damping_ratios=0.05), [0.5, 0.8], [0.1, 0.5], solver=SOLVER)
+    np.testing.assert_array_equal(found.base_force, cells.base_force)
+    np.testing.assert_array_equal(found.drift, cells.drift)
 
 
 def test_accelerations_in_si_units():

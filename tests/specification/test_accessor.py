@@ -31,6 +31,19 @@ def test_names_of_regimes(mapped):
     assert labels.sel(mu=1.0, r=0.5, beta=1.2, method="nearest").item() == "permanent-sticking"
 
 
+def test_a_summary_is_what_info_prints(mapped, tmp_path, capsys):
+    answer = fm.design.stuck(fm.System(damping_ratios=0.05), [0.5, 1.5])
+    for ds in (mapped, answer):
+        path = tmp_path / "one.nc"
+        ds.to_netcdf(path)
+        assert main(["info", str(path)]) == 0
+        summary = ds.frictionmap.summary()
+        assert capsys.readouterr().out.rstrip() == summary.rstrip()
+        assert summary._repr_html_().startswith("<pre>")
+    assert "friction ratio beta                1\n" in summary
+    assert repr(summary) == summary
+
+
 @pytest.mark.parametrize("name", ["stick-slip", "stick_slip", "stick slip"])
 def test_cells_of_a_regime(mapped, name):
     found = mapped.frictionmap.where_regime(name)

@@ -159,7 +159,7 @@ class ContactSystem:
     base: Mapping[int, complex]  # phasors of the base motion
     offset: np.ndarray  # (n,) constant loads
     loop: str = ""  # numbers of the rigid contacts that close a loop; empty without one
-    free: bool = False  # whether the structure has rigid-body modes
+    free: bool = False  # whether the structure has rigid-body modes; set by the system
 
     @property
     def count(self) -> int:
@@ -237,9 +237,7 @@ def contact_system(system: Definition) -> ContactSystem:
             "cannot use", "load_offset", "with base excitation: it is a force on each mass; omit one"
         )
     offset = _offset(system.load_offset, system.n)
-    found = ContactSystem(
-        groups, forces, base, offset, _describe_loop(groups), free=getattr(system, "rigid_modes", 0) > 0
-    )
+    found = ContactSystem(groups, forces, base, offset, _describe_loop(groups))
     if not found.forces and not found.base:
         if not any(group.first.belt for group in groups):
             raise InputError("load_harmonics", "must have a harmonic that is not zero; got none")

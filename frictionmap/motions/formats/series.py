@@ -72,7 +72,7 @@ def numbers(path: Path, lines: Sequence[str], first: int, width: int | None = No
 
 def _fields(line: str) -> list[str]:
     """Fields between blanks; where a minus stands in the place of the blank, the numbers that touch."""
-    fields = []
+    fields: list[str] = []
     for field in line.split():
         parts = _TOUCHING.findall(field)
         fields += parts if "".join(parts) == field else [field]

@@ -224,6 +224,11 @@ def unknown_key(key: str, section: str, valid: Sequence[str]) -> InputError:
     return InputError(f"unknown key {name!r}{checks.nearest(key, valid)}; valid: {', '.join(valid)}")
 
 
+def names_of_tables() -> tuple[str, ...]:
+    """Names of all tables of configurations."""
+    return tuple(_SECTIONS)
+
+
 def checked_table(tree: Mapping[str, object], name: str) -> Mapping[str, Any]:
     """A table of a configuration, its keys checked; its values belong to who asks."""
     return _table(tree, name)

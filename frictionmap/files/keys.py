@@ -576,6 +576,12 @@ KEYS: dict[str, tuple[Key, ...]] = {
     ),
     "spectrum": (
         Key(
+            "contact_stiffness",
+            "stiffness of a spring in series with the contact, over that of the mass's spring",
+            number(above=0.0),
+            example="5.0",
+        ),
+        Key(
             "period",
             "natural periods, in the unit of time of the records",
             _SPREAD_TIME,

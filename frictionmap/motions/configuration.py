@@ -11,7 +11,7 @@ import xarray as xr
 
 from .. import checks
 from ..errors import InputError
-from ..files.config import checked_table, common_tables, read_tree, within
+from ..files.config import checked_table, common_tables, names_of_tables, read_tree, unknown_key, within
 from ..model.system import System
 from ..units.quantities import quantities
 from ..units.scales import Units
@@ -85,7 +85,7 @@ def load_history(path: str | Path, overrides: Sequence[str] = ()) -> Task:
 
 
 def load_spectrum(path: str | Path, overrides: Sequence[str] = ()) -> Task:
-    """Read a configuration of friction response spectra; [system] and [grid] are not used.
+    """Read a configuration of friction response spectra; of [system] only the damping is used.
 
     Raises
     ------
@@ -115,10 +115,32 @@ def load_spectrum(path: str | Path, overrides: Sequence[str] = ()) -> Task:
             "cannot use", "record.after", "for spectra: motions are followed to their rest; omit it"
         )
     given |= {"scale": record["scale"]} if "scale" in record else {}
+    given |= _of_system(tree, path, given)
     wanted = given.pop("quantities", None)
     ask = partial(_ask_spectrum, records, given, wanted)
     count = len(records) * _count(*(given.get(name) for name in ("scale", "mu", "period", "friction")))
     return Task(title, path.stem, text, (path, *files), count, ask)
+
+
+def _of_system(tree: Mapping[str, Any], path: Path, given: Mapping[str, Any]) -> dict[str, Any]:
+    """What a table [system] says of the one mass of spectra: damping, and the spring of its contact."""
+    for key in tree:
+        if key not in names_of_tables():
+            raise unknown_key(key, "", names_of_tables())
+    if "system" not in tree:
+        return {}
+    system = common_tables(tree, path).system
+    if system.n > 1 or system.contact_system.count > 1:
+        raise InputError(
+            f"cannot compute spectra of {system.n} masses and {system.contact_system.count} contacts: they are "
+            "of one mass with one contact; use frictionmap history"
+        )
+    ratios: Any = system.damping_ratios
+    found: dict[str, Any] = {"damping": ratios[0]}
+    stiffness = system.contact_system.groups[0].stiffness
+    if stiffness is not None:
+        found["contact_stiffness"] = stiffness
+    return {name: value for name, value in found.items() if name not in given}
 
 
 def _records(tree: Mapping[str, Any], path: Path) -> tuple[str, tuple[Record, ...], tuple[Path, ...]]:

@@ -15,6 +15,7 @@ from ..jobs import Progress, Watch, run_jobs
 from ..units.quantities import quantities
 from ..units.table import UNITS
 from ..version import __version__
+from .elastic_spectra import follow_elastic
 from .lanes import Driven, Oscillators, Responses, driven, follow, in_lanes, parts_of
 from .origins import record_attributes
 from .pieces import Pieces, derivative
@@ -128,6 +129,7 @@ def spectrum(
     *,
     mu: ArrayLike = 1.0,
     damping: float = 0.0,
+    contact_stiffness: float | None = None,
     scale: ArrayLike = 1.0,
     threads: int | None = None,
     progress: Progress | None = None,
@@ -153,6 +155,9 @@ def spectrum(
         Ratios of static to kinetic friction [-], >= 1, increasing.
     damping : float
         Damping ratio [-], >= 0.
+    contact_stiffness : float, optional
+        Stiffness of a spring in series with the contact, over that of the mass's spring, > 0; default:
+        rigid.  `stops` are then ends of slips.  It takes about a hundred times as long.
     scale : array_like
         Factors of the records, increasing.
     threads : int, optional
@@ -186,7 +191,13 @@ def spectrum(
         _friction(friction, listed), checks.number(damping, "damping", least=0.0),
     )  # fmt: skip
     checks.cells(grid.mu.size, grid.period.size, grid.friction.size, points=len(listed) * grid.scale.size)
-    ds = _labelled(grid, _followed(grid, checks.threads(threads), progress, watch))
+    if contact_stiffness is None:
+        found = _followed(grid, checks.threads(threads), progress, watch)
+    else:
+        stiffness = checks.number(contact_stiffness, "contact_stiffness", above=0.0)
+        sizes = [_size(record) for record in listed]
+        found = follow_elastic(grid, stiffness, sizes, checks.threads(threads), progress, watch)
+    ds = _labelled(grid, found)
     return ds.assign_attrs({
         "Conventions": "CF-1.11", "title": "Friction response spectra",
         "source": f"frictionmap {__version__}",

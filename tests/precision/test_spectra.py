@@ -206,3 +206,15 @@ def test_reference_ties(reference_table):
         np.testing.assert_array_equal(ds.stops, [below["stops"], 0])
         assert float(ds.sliding_distance[0]) == pytest.approx(below["sliding_distance"], rel=1e-9)
         assert float(ds.sliding_distance[1]) == 0.0
+
+
+def test_a_stiff_contact_spring_is_a_rigid_contact_in_the_limit():
+    quake = Record(lcg(21, 600, (1.6, -0.8), (60, 300)), 0.08)
+    rigid = spectrum(quake, [6.0], [0.1], damping=0.05)
+    far, near = (
+        abs(spectrum(quake, [6.0], [0.1], damping=0.05, contact_stiffness=k).amplitude - rigid.amplitude)
+        for k in (1e4, 1e6)
+    )
+    # the difference is of the order of the flexibility of the spring
+    assert 0.0 < near.item() < 0.1 * far.item()
+    assert far.item() < 1e-2 * rigid.amplitude.item()

@@ -1,0 +1,81 @@
+"""Spectra of one mass whose contact has a spring: by the general engine, oscillator by oscillator."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import InputError
+from ..jobs import Progress, Watch
+from ..model.contact import Contact
+from ..model.system import System
+from .dataset import history
+from .lanes import Responses
+from .record import Record
+
+if TYPE_CHECKING:
+    from .spectra import Grid
+
+#: Powers of w that the values of a record are divided by, in time over 1/w and displacements as they are.
+_POWERS = {"force": 2, "acceleration": 2, "velocity": 1, "displacement": 0}
+
+
+def _over_w(record: Record, w: float, size: float) -> Record:
+    """The record in time over 1/w, without a unit."""
+    times = {"dt": record.dt * w} if record.dt is not None else {"time": record.time * w}
+    values = record.values * (size * w ** -_POWERS[record.quantity])
+    return replace(record, values=values, unit=None, **times)
+
+
+def _system(grid: "Grid", stiffness: float) -> System:
+    base = grid.records[0].quantity != "force"
+    contact = Contact("joined-base-wall" if base else "fixed-wall", stiffness=stiffness)
+    moved = {"excitation": "base", "damping_reference": "base"} if base else {}
+    return System(damping_ratios=grid.damping, contacts=[contact], **moved)  # type: ignore[arg-type]
+
+
+def follow_elastic(
+    grid: "Grid", stiffness: float, size: list[float], threads: int, progress: Progress | None,
+    watch: Watch | None,
+) -> np.ndarray:  # fmt: skip
+    """What became of all oscillators, (variables, *grid.shape).
+
+    Parameters
+    ----------
+    grid : the oscillators
+    stiffness : of the contact, over that of the mass's spring
+    size : factors of the records in SI units
+    threads, progress, watch : as in `spectrum`
+
+    Raises
+    ------
+    InputError
+        A period is infinite, or mu is not 1.
+    """
+    if grid.mu.size != 1 or grid.mu[0] != 1.0:
+        raise InputError(
+            "mu",
+            f"must be 1 with contact_stiffness: its spring would jump at break-away; got {grid.mu.tolist()}",
+        )
+    if np.isinf(grid.period).any():
+        raise InputError(
+            "period", "must be finite with contact_stiffness, a share of the stiffness of the spring; got inf"
+        )
+    system = _system(grid, stiffness)
+    found = np.zeros((len(Responses._fields), *grid.shape))
+    for k, period in enumerate(grid.period):
+        w = 2.0 * np.pi / period
+        records = [_over_w(one, w, share) for one, share in zip(grid.records, size, strict=True)]
+        ds = history(
+            system, records, beta=grid.friction / w**2, scale=grid.scale, samples="none", threads=threads,
+            watch=watch,
+        )  # fmt: skip
+        own = {"stops": "slips"}
+        for i, name in enumerate(Responses._fields):
+            values = ds[own.get(name, name)]
+            values = values.isel(dof=0) if "dof" in values.dims else values
+            factor = {"acceleration_amplitude": w * w, "asleep_time": 1.0 / w}.get(name, 1.0)
+            found[i, :, :, :, k] = factor * values.values
+        if progress is not None:
+            progress(k + 1, grid.period.size)
+    return found

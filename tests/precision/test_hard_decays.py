@@ -194,3 +194,16 @@ def test_a_slow_part_below_white_noise_is_seen():
     assert long_inflation(correlated(c, share, 20_000, 1)) == pytest.approx(expected, rel=0.15)
     assert long_inflation(correlated(0.0, 0.0, 20_000, 2)) == 1.0
     assert long_inflation(np.zeros(100)) == 1.0
+
+
+@pytest.mark.parametrize("friction", [1.4, 1.8, 2.0, 2.3, 2.5])
+@pytest.mark.parametrize("held", [0.2, 0.5])
+def test_two_or_three_half_cycles_after_a_rest(friction, held):
+    """Before its release the mass looks like a turning point, at any time."""
+    truth = Truth(3.1, 0.01, friction, 9.0, held, 0.5, 300.0, held + 1.0, 0.01)
+    for seed in range(3):
+        ds = fm.identify.free_decay(*synthetic(truth, seed))
+        for name in ("f_n", "zeta", "x_F", "X0"):
+            one = ds.sel(parameter=name)
+            assert abs(float(one.estimate) - getattr(truth, name)) < 4.5 * float(one.standard_error)
+        assert abs(float(ds.estimate.sel(parameter="x_F")) - friction) < 0.1

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..signals.turning_points import TurningPoints, hides_turning_points, regular_run
+from ..signals.turning_points import TurningPoints, gaps_after, hides_turning_points, regular_run
 from .motion import PARAMETERS, Decay, in_record, is_possible
 from .problem import X_F, Record, model, problem
 
@@ -62,7 +62,7 @@ def for_refining(record: Record) -> Record:
 
 def starts(record: Record, points: TurningPoints) -> list[Start]:
     """The best start for each number of half cycles before rest, and for no rest, by their sums."""
-    half = usual_half(points)
+    half, points = _with_release(record, points)
     found = [
         start
         for release in _releases(record, points, half)
@@ -79,6 +79,27 @@ def _alike(one: Start, other: Start, half: float) -> bool:
     """Whether two starts have the same number of half cycles after the same turning point."""
     t0 = PARAMETERS.index("t0")
     return one.n == other.n and abs(one.values[t0] - other.values[t0]) < 0.5 * half
+
+
+def _with_release(record: Record, points: TurningPoints) -> tuple[float, TurningPoints]:
+    """Half a period [s], and the points with the end of a rest before them in the place of a part of it.
+
+    A mass that is held looks like a turning point at any time before its release.  Of two points this one
+    decides on the half period, so it is taken as twice the time from the middle of the swing to its end.
+    """
+    half = usual_half(points)
+    if points.time.size > 2 or record.sensor is not None or gaps_after(record.time).size:
+        return half, points  # those of a sensor are moved, and a gap may hide the middle
+    begin, end = points.time[-2], points.time[-1]
+    middle = 0.5 * (points.place[-2] + points.place[-1])
+    swing = (record.time >= begin) & (record.time <= end)
+    before = swing & ((record.x > middle) == (points.place[-2] > middle))
+    if not before.any():
+        return half, points
+    own = 2.0 * (end - float(record.time[before][-1]))
+    times = points.time.copy()
+    times[0] = max(times[0], times[1] - own * (points.number[1] - points.number[0]))
+    return own, points._replace(time=times)
 
 
 def usual_half(points: TurningPoints) -> float:

@@ -132,8 +132,8 @@ def _of_system(tree: Mapping[str, Any], path: Path, given: Mapping[str, Any]) ->
     system = common_tables(tree, path).system
     if system.n > 1 or system.contact_system.count > 1:
         raise InputError(
-            f"cannot compute spectra of {system.n} masses and {system.contact_system.count} contacts: they are "
-            "of one mass with one contact; use frictionmap history"
+            f"cannot compute spectra of {system.n} masses and {system.contact_system.count} contacts: a "
+            "spectrum is of one mass with one contact; use frictionmap history"
         )
     ratios: Any = system.damping_ratios
     found: dict[str, Any] = {"damping": ratios[0]}

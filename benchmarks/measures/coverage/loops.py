@@ -191,7 +191,7 @@ _SEEDS = {
     "play, and friction that depends on the direction": 30,
     "sine": 30,
     "velocity": 25,
-    "speed law, rising frequency": 15,
+    "speed law, rising frequency": 12,
     "mass and delay, two frequencies": 15,
 }
 

@@ -159,14 +159,15 @@ def _check_identifiable(fit: LoopFit, held: np.ndarray) -> None:
     unseen[MU] = False
     for k in np.flatnonzero(unseen):
         raise InputError(
-            f"{fit.test.names[k]} is not identifiable: no sample depends on it; remove it from free"
+            f"cannot identify {fit.test.names[k]}: not identifiable, no sample depends on it; "
+            "remove it from free"
         )
     together, deficient = undetermined(fit.problem, fit.solution, _CONDITION)
     names = [fit.test.names[k] for k in together if k < fit.test.named]
     if deficient and names:
         raise InputError(
-            f"{' and '.join(names)} are not identifiable: the force of this test depends on them alike; "
-            f"hold one of them, known.{names[-1]}"
+            f"cannot identify {' and '.join(names)} together: not identifiable, as the force of this test "
+            f"depends on them alike; hold one of them, known.{names[-1]}"
         )
 
 

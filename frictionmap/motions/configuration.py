@@ -115,14 +115,14 @@ def load_spectrum(path: str | Path, overrides: Sequence[str] = ()) -> Task:
             "cannot use", "record.after", "for spectra: motions are followed to their rest; omit it"
         )
     given |= {"scale": record["scale"]} if "scale" in record else {}
-    given |= _of_system(tree, path, given)
+    given |= _system_values(tree, path, given)
     wanted = given.pop("quantities", None)
     ask = partial(_ask_spectrum, records, given, wanted)
     count = len(records) * _count(*(given.get(name) for name in ("scale", "mu", "period", "friction")))
     return Task(title, path.stem, text, (path, *files), count, ask)
 
 
-def _of_system(tree: Mapping[str, Any], path: Path, given: Mapping[str, Any]) -> dict[str, Any]:
+def _system_values(tree: Mapping[str, Any], path: Path, given: Mapping[str, Any]) -> dict[str, Any]:
     """What a table [system] says of the one mass of spectra: damping, and the spring of its contact."""
     for key in tree:
         if key not in names_of_tables():

@@ -1,7 +1,6 @@
 """Spectra of one mass whose contact has a spring: by the general engine, oscillator by oscillator."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,11 +9,8 @@ from ..jobs import Progress, Watch
 from ..model.contact import Contact
 from ..model.system import System
 from .dataset import history
-from .lanes import Responses
+from .lanes import Grid, Responses
 from .record import Record
-
-if TYPE_CHECKING:
-    from .spectra import Grid
 
 #: Powers of w that the values of a record are divided by, in time over 1/w and displacements as they are.
 _POWERS = {"force": 2, "acceleration": 2, "velocity": 1, "displacement": 0}
@@ -27,7 +23,7 @@ def _over_w(record: Record, w: float, size: float) -> Record:
     return replace(record, values=values, unit=None, **times)
 
 
-def _system(grid: "Grid", stiffness: float) -> System:
+def _system(grid: Grid, stiffness: float) -> System:
     base = grid.records[0].quantity != "force"
     contact = Contact("joined-base-wall" if base else "fixed-wall", stiffness=stiffness)
     moved = {"excitation": "base", "damping_reference": "base"} if base else {}
@@ -35,7 +31,7 @@ def _system(grid: "Grid", stiffness: float) -> System:
 
 
 def follow_elastic(
-    grid: "Grid", stiffness: float, size: list[float], threads: int, progress: Progress | None,
+    grid: Grid, stiffness: float, size: list[float], threads: int, progress: Progress | None,
     watch: Watch | None,
 ) -> np.ndarray:  # fmt: skip
     """What became of all oscillators, (variables, *grid.shape).

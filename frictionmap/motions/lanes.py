@@ -24,6 +24,7 @@ from .._kernels.history.spectrum_lanes import (
 )
 from ..errors import InputError
 from .pieces import Pieces
+from .record import Record
 
 #: A value and the one before it differ by no more than this share of the largest where nothing jumps.
 _ROUNDING = 1e-13
@@ -61,6 +62,22 @@ class Driven(NamedTuple):
     def lengths(self) -> np.ndarray:
         """Distinct lengths of the parts."""
         return np.unique(self.pieces.steps) / self.parts
+
+
+class Grid(NamedTuple):
+    """The oscillators that are wanted under every record; forces are over the mass."""
+
+    records: tuple[Record, ...]
+    scale: np.ndarray
+    mu: np.ndarray
+    period: np.ndarray
+    friction: np.ndarray
+    damping: float
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of records, and of values along the axes."""
+        return len(self.records), self.scale.size, self.mu.size, self.period.size, self.friction.size
 
 
 class Responses(NamedTuple):

@@ -1,7 +1,7 @@
 """`spectrum`: friction response spectra, the peaks of one mass with friction over its natural period."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,7 +16,7 @@ from ..units.quantities import quantities
 from ..units.table import UNITS
 from ..version import __version__
 from .elastic_spectra import follow_elastic
-from .lanes import Driven, Oscillators, Responses, driven, follow, in_lanes, parts_of
+from .lanes import Driven, Grid, Oscillators, Responses, driven, follow, in_lanes, parts_of
 from .origins import record_attributes
 from .pieces import Pieces, derivative
 from .record import Record
@@ -37,22 +37,6 @@ VARIABLES = {
 
 _LENGTHS = ("amplitude", "residual", "sliding_distance")
 _STATUSES = "resolved ringing creeping too_many_events"
-
-
-class Grid(NamedTuple):
-    """The oscillators that are wanted under every record; forces are over the mass."""
-
-    records: tuple[Record, ...]
-    scale: np.ndarray
-    mu: np.ndarray
-    period: np.ndarray
-    friction: np.ndarray
-    damping: float
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Number of records, and of values along the axes."""
-        return len(self.records), self.scale.size, self.mu.size, self.period.size, self.friction.size
 
 
 def _records(given: Any) -> tuple[Record, ...]:

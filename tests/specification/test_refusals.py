@@ -49,7 +49,7 @@ map latin.toml
 map rig.toml
     cannot compute from a configuration with [data]: it describes measured data; use frictionmap identify
 map good.toml --set titel=x
-    unknown key 'titel' (did you mean title?); valid: title, system, grid, solver, curves, design, units, axes
+    unknown key 'titel' (did you mean title?); valid: title, system, grid, solver, curves, design, record, history, spectrum, units, axes
 map good.toml --set title=1
     title must be text; got 1
 map good.toml --set system.contct=fixed-wall
@@ -377,9 +377,9 @@ identify rig.toml -o rig.json
 design question.toml -o answer.txt
     -o must end in .nc; got answer.txt
 polt map.nc
-    unknown command 'polt' (did you mean plot?); valid: map, curves, boundaries, response, explore, identify, design, reduce, plot, export, info, init, schema, help, completion
+    unknown command 'polt' (did you mean plot?); valid: map, curves, boundaries, response, explore, identify, design, reduce, history, spectrum, plot, export, info, init, schema, help, completion
 help polt
-    unknown command 'polt' (did you mean plot?); valid: map, curves, boundaries, response, explore, identify, design, reduce, plot, export, info, init, schema, help, completion
+    unknown command 'polt' (did you mean plot?); valid: map, curves, boundaries, response, explore, identify, design, reduce, history, spectrum, plot, export, info, init, schema, help, completion
 map good.toml --thread 2
     unrecognized arguments: --thread 2 (did you mean --threads?) (see frictionmap --help)
 plot map.nc --no-legends

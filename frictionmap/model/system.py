@@ -297,6 +297,8 @@ class System(Shown):
             reduction = self._reduced(self.matrices, previous)
             self._set("matrices", reduced_matrices(reduction))
             self._set("_contact_system", self._contact_system.at(reduction.reduced.rows))
+        if self.rigid_modes:  # known only now that the matrices are checked
+            self._set("_contact_system", replace(self._contact_system, free=True))
         scale = self.frequency_scale
         if scale is None and self.reduction is not None:  # r does not depend on the reduction
             scale = self.reduction.first_frequency

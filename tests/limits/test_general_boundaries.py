@@ -212,6 +212,6 @@ def test_curves_and_maps_of_a_held_spring_agree():
 def test_friction_that_is_infinite_at_one_frequency_leaves_that_at_others():
     """F = a sin tau and nu = 1 + (1 - e) cos tau: f = a/sqrt(1 - (1 - e)^2), infinite for a = 1e9."""
     e = 1e-8
-    found = held._least_friction({1: np.array([[-1e9j], [-1j]])}, {1: 1.0 - e}, 0)
+    found = held._least_friction({1: np.array([[-1e9j], [-1j]])}, {1: 1.0 - e}, 0, True)
     assert found[0] == np.inf
     assert found[1] == pytest.approx(1.0 / np.sqrt(1.0 - (1.0 - e) ** 2), rel=1e-6)  # cancellation: eps/e

@@ -121,6 +121,7 @@ DIMENSIONLESS = {
     "record.pulse.rise", "record.mass", "record.vector[]", "record.scale", "record.scale[]",
     *(f"record.generate.{name}" for name in ("seed", "count", "damping", "filter_damping")),
     "history.mu", "history.mu[]", "history.samples", "spectrum.mu", "spectrum.mu[]", "spectrum.damping",
+    "spectrum.contact_stiffness",
 }  # fmt: skip
 
 #: Numbers of records and motions that may have units, which the tests of records compare.

@@ -19,7 +19,7 @@ from frictionmap.files.summary import describe_file
 from frictionmap.plot import PICTURED
 
 TWO = fm.System(mass_ratios=[1.0, 0.5], stiffness_ratios=[1.0, 2.0], damping_ratios=0.02)
-UNITS = fm.Units(natural_frequency="4.2 Hz", load="12.5 N", stiffness="3 N/mm")
+UNITS = fm.Units(natural_frequency="4.2 Hz", load="12.5 N", stiffness="3 N/mm", normal_force="50 N")
 KINDS = ("map", "curves", "boundaries", "response", "shares")
 
 

@@ -109,6 +109,6 @@ def test_the_wheel_runs_in_a_fresh_environment(built):
     program = fresh / "bin" / "frictionmap"
     assert run(program, "--version", cwd=folder) == f"frictionmap {fm.__version__}\n"
     run(program, "init", cwd=folder)
-    run(program, "map", "map.toml", "--set", "grid.r.step=0.31", "--set", "grid.beta.num=7", cwd=folder)
+    run(program, "map", "map.toml", "--set", "grid.r.step=9 Hz", "--set", "grid.beta.num=7", cwd=folder)
     run(program, "plot", "map.nc", cwd=folder)
     assert (folder / "map.png").read_bytes().startswith(b"\x89PNG")

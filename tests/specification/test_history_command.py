@@ -1,0 +1,118 @@
+"""The commands history and spectrum: their configurations, files, summaries, tables and pictures."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import ROOT
+
+import frictionmap as fm
+from frictionmap.command_line.cli import main
+
+MOTIONS = ROOT / "configs" / "motions"
+FEW = ["--quiet", "--set", "record.generate.count=2", "--set", "record.generate.duration=4 s"]
+
+FRAME = """
+[system]
+mass_ratios = [1.0, 1.0]
+stiffness_ratios = [1.0, 1.0]
+excitation = "base"
+damping_reference = "base"
+[[system.contacts]]
+kind = "joined-base-wall"
+masses = [1]
+[record]
+pulse = { kind = "half-sine", amplitude = 1.0, duration = 3.0 }
+[history]
+beta = [0.2, 0.4]
+"""
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def test_history_of_a_suite():
+    assert main(["history", str(MOTIONS / "brace-frame.toml"), *FEW]) == 0
+    with xr.open_dataset("brace-frame-history.nc") as ds:
+        assert ds.sizes["record"] == 2
+        assert ds.sizes["contact"] == 2
+        np.testing.assert_allclose(ds.amplitude_m, ds.amplitude / (2.0 * np.pi * 1.5) ** 2, rtol=1e-12)
+        assert ds.end_time.attrs["units"] == "s"
+        assert (ds.status == 0).all()
+    assert main(["plot", "brace-frame-history.nc"]) == 0
+    assert main(["info", "brace-frame-history.nc"]) == 0
+    assert main(["export", "brace-frame-history.nc", "-o", "suite.csv"]) == 0
+
+
+def test_one_motion_with_its_history(tmp_path):
+    (tmp_path / "frame.toml").write_text(FRAME)
+    assert main(["history", "frame.toml", "--quiet", "--set", "history.beta=0.2"]) == 0
+    ds = fm.open("frame-history.nc")
+    direct = fm.history(
+        fm.System(
+            mass_ratios=[1, 1], stiffness_ratios=[1, 1], excitation="base", damping_reference="base",
+            contacts=[fm.Contact("joined-base-wall", 1)],
+        ),
+        fm.Record.pulse("half-sine", 1.0, 3.0), beta=0.2,
+    )  # fmt: skip
+    np.testing.assert_array_equal(ds.x, direct.x)
+    assert ds.time.size > 2
+    assert main(["export", "frame-history.nc", "-o", "motion.csv"]) == 0
+    lines = (tmp_path / "motion.csv").read_text().splitlines()
+    assert lines[0].startswith("time,x_1,x_2")
+    assert len(lines) == ds.time.size + 1
+    assert main(["plot", "frame-history.nc"]) == 0
+    # goes on from the end of the first
+    goes_on = ["--set", 'history.start="frame-history.nc"', "--set", "history.beta=0.2"]
+    assert main(["history", "frame.toml", "--quiet", "-o", "on.nc", *goes_on]) == 0
+
+
+def test_spectra_of_a_suite():
+    few = ["--set", "spectrum.period.num=5"]
+    assert main(["spectrum", str(MOTIONS / "spectra.toml"), *FEW, *few]) == 0
+    with xr.open_dataset("spectra-spectrum.nc") as ds:
+        assert dict(ds.amplitude.sizes) == {"record": 2, "scale": 1, "mu": 1, "period": 5, "beta": 3}
+        np.testing.assert_allclose(ds.period[[0, -1]], [0.05, 4.0], rtol=1e-12)
+        np.testing.assert_allclose(ds.beta, 9.80665 * np.array([0.02, 0.05, 0.1]), rtol=1e-12)
+    assert main(["plot", "spectra-spectrum.nc"]) == 0
+    assert main(["info", "spectra-spectrum.nc"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ("history.beta=[0.4,0.2]", "history.beta must increase; got [0.4, 0.2]"),
+        ("history.samples=often", "history.samples must be one of all, none; got 'often'"),
+        ("record.after=-1", "record.after must be >= 0; got -1"),
+        ("history.betas=1", "unknown key 'history.betas' (did you mean beta?); valid: beta, friction, mu, "),
+        (
+            "record.unit=g",
+            "cannot convert seconds to ratios: a reference value is missing; give units.natural_f",
+        ),
+        ("history.start=none.nc", "none.nc"),
+    ],
+)
+def test_a_mistake_is_refused_in_one_line(tmp_path, capsys, change, message):
+    (tmp_path / "frame.toml").write_text(FRAME)
+    assert main(["history", "frame.toml", "--set", change]) == 2
+    said = capsys.readouterr().err
+    assert message in said
+    assert len(said.strip().splitlines()) == 1
+
+
+def test_spectra_are_of_one_mass(tmp_path, capsys):
+    (tmp_path / "frame.toml").write_text(FRAME + "[spectrum]\nperiod = [1.0]\nfriction = [0.1]\n")
+    assert main(["spectrum", "frame.toml"]) == 2
+    assert "spectra of 2 masses" in capsys.readouterr().err
+
+
+def test_what_a_motion_is_under_is_refused_by_steady_states():
+    moving = fm.Record([0.0, 0.1, 0.0], 1.0, quantity="force")
+    system = fm.System(contacts=[fm.Contact("fixed-wall", 1, normal_record=moving)])
+    with pytest.raises(fm.InputError, match="normal_record under a periodic load"):
+        fm.sweep(system, [0.5], [0.2])
+    low = fm.Record([0.0, -1.2, 0.0], 1.0, quantity="force")
+    lifted = fm.System(contacts=[fm.Contact("fixed-wall", 1, normal_record=low)])
+    with pytest.raises(fm.InputError, match="must leave 1 \\+ its value >= 0"):
+        fm.history(lifted, moving)

@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from itertools import islice
+from itertools import count, islice
 
 #: A function and its arguments.
 Job = tuple[Callable[..., None], tuple]
@@ -37,6 +37,17 @@ def run_here(jobs: Sequence[Job], done: Callable) -> None:
     for index, (function, arguments) in enumerate(jobs):
         function(*arguments)
         done(index)
+
+
+def run_counted(jobs: Sequence[Job], threads: int, progress: Progress | None, watch: Watch | None) -> None:
+    """Run jobs as `run_jobs` does, and report how many have ended."""
+    ended = count(1)
+
+    def done(_: int) -> None:
+        if progress is not None:
+            progress(next(ended), len(jobs))
+
+    run_jobs(jobs, threads, done, watch)
 
 
 def run_jobs(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None) -> None:

@@ -125,6 +125,8 @@ def _chain(name: str, meaning: str) -> Key:
 
 #: Friction of motions in time.
 _FRICTION = either(number(least=0.0), with_unit("force"), with_unit("acceleration"))
+_FRICTIONS = either(_FRICTION, several(_FRICTION))
+_STATIC = either(number(least=1.0), several(number(least=1.0)))
 
 
 def _spread(kind: str) -> Schema:
@@ -542,21 +544,21 @@ KEYS: dict[str, tuple[Key, ...]] = {
         Key(
             "beta",
             "friction ratios; with [units] also forces, or accelerations of friction over m_1",
-            either(_FRICTION, several(_FRICTION)),
+            _FRICTIONS,
             example="[0.2]",
             words='a number >= 0, or with a unit of force or acceleration, such as "0.05 g"; or a list',
         ),
         Key(
             "friction",
             "another name of beta",
-            either(_FRICTION, several(_FRICTION)),
+            _FRICTIONS,
             example='["0.05 g"]',
             words="as beta",
         ),
         Key(
             "mu",
             "ratios of static to kinetic friction",
-            either(number(least=1.0), several(number(least=1.0))),
+            _STATIC,
             1.0,
         ),
         Key(
@@ -599,7 +601,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         Key(
             "mu",
             "ratios of static to kinetic friction",
-            either(number(least=1.0), several(number(least=1.0))),
+            _STATIC,
             1.0,
         ),
         Key("damping", "damping ratio", number(least=0.0), 0.0),

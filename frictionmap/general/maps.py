@@ -1,13 +1,12 @@
 """Maps of general systems: cells computed row by row on several threads, as labelled variables."""
 
-import itertools
 from collections.abc import Mapping
 
 import numpy as np
 
 from .. import regimes
 from .._kernels.general.fill import Cells, Grid, fill_rows
-from ..jobs import Job, Progress, Watch, run_jobs
+from ..jobs import Job, Progress, Watch, run_counted
 from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines
@@ -83,14 +82,8 @@ def solve_cells(
         (fill_rows, (row, min(row + rows.step, rows.stop), problem, grid, found, outputs, cancel))
         for row in rows
     ]
-    ended = itertools.count(1)
-
-    def done(_: int) -> None:
-        if progress is not None:
-            progress(next(ended), len(rows))
-
     try:
-        run_jobs(jobs, threads, done, watch)
+        run_counted(jobs, threads, progress, watch)
     except BaseException:
         cancel[0] = 1  # the kernel checks it at every cell
         raise

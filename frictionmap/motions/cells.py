@@ -1,6 +1,5 @@
 """The motions of a grid of records, scales and friction, on several threads."""
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -8,11 +7,11 @@ import numpy as np
 from .._kernels.general.record import make_record
 from .._kernels.general.series import Friction
 from .._kernels.history.kept import Kept, make_kept
-from .._kernels.history.motion import Course, follow_record, make_memory
-from ..jobs import Progress, Watch, run_jobs
+from .._kernels.history.motion import CREEPING, Course, follow_record, make_memory
+from .bed import held
 from .channels import Drive
 from .starts import Start
-from .structure import Structure, held_of, problem_of, watched_of
+from .structure import Structure, problem_of, watched_of
 
 #: Events and states that there is room for at first, and samples per event beyond these.
 _FIRST, _SAMPLES_PER_EVENT = 256, 4
@@ -23,10 +22,8 @@ _MOST_AFTER = 200_000
 #: Rounding error of a sum, relative to its terms.
 _ROUNDING = 2.0**-50
 
-_CREEPS = 2  # the status
-
 #: Friction that nothing overcomes.
-_HOLDS = 1e150
+HOLDS = 1e150
 
 
 class Asked(NamedTuple):
@@ -63,7 +60,7 @@ class Motions:
     def __init__(self, structure: Structure, drive: Drive) -> None:
         self.structure, self.drive = structure, drive
         self.problem = problem_of(structure, drive)
-        self.held = held_of(self.problem)
+        self.held = held(self.problem)
         self.watched = watched_of(structure, self.problem, drive)
         self._even = len(np.unique(drive.steps)) == 1  # else tables hold for one interval
 
@@ -141,7 +138,7 @@ class Motions:
         if one.asleep == one.asleep and self.held.restored:
             springs = np.where(self.structure.spring > 0.0, one.kept.forces, 0.0)
             return self.held.rest @ np.concatenate((one.state[0], one.state[1], springs))
-        return one.state[0] if one.status == _CREEPS else None
+        return one.state[0] if one.status == CREEPING else None
 
     def contact_places(self, one: Found) -> np.ndarray:
         """Where the contacts come to rest, (N,)."""
@@ -152,23 +149,8 @@ class Motions:
 
     def hold(self, asked: Asked) -> np.ndarray:
         """Largest force in every contact with all contacts held, (N,)."""
-        friction = np.full(self.structure.spring.size, _HOLDS)
+        friction = np.full(self.structure.spring.size, HOLDS)
         asked = Asked(asked.start, 0.0 if asked.after is None else asked.after, 0)
         found = self.follow(friction, friction, 1.0, asked, False)
         rows = self.watched.places["friction"]
         return np.abs(found.kept.peaks[:2, rows]).max(axis=0)
-
-
-def run_all(
-    tasks: list[Callable[[], None]], threads: int, progress: Progress | None, watch: Watch | None
-) -> None:
-    """Run one task per motion."""
-    done = 0
-
-    def count(index: int) -> None:
-        nonlocal done
-        done += 1
-        if progress is not None:
-            progress(done, len(tasks))
-
-    run_jobs([(task, ()) for task in tasks], threads, count, watch)

@@ -8,7 +8,7 @@ from .. import checks
 from ..errors import InputError
 from ..model.general import ContactSystem
 from ..model.system import System
-from .pieces import Pieces, derivative, extremes, integral, on_times
+from .pieces import SAME, Pieces, derivative, extremes, integral, on_times
 from .record import Record
 
 
@@ -73,12 +73,20 @@ def is_relative_damping(system: System) -> bool:
     return system.excitation != "base" or system.damping_reference == "base"
 
 
+def wall_shares(system: System) -> np.ndarray:
+    """Motion of the walls of contacts by that of the base, relative to which the masses move, (N,).
+
+    A wall at rest moves by -u.
+    """
+    groups = system.contact_system.groups
+    return np.array([float(group.base) - group.vector.sum() for group in groups])
+
+
 def _base(system: System, general: ContactSystem, record: Record, pieces: Pieces) -> list[Channel]:
     place, rate, acceleration = _motion_of_base(record, pieces)
     iota, still = np.ones(system.n), np.zeros(general.count)
     found = [Channel(acceleration, -system.modes.mass @ iota, still, still)]
-    # a wall at rest moves by -u in coordinates relative to the base
-    walls = np.array([float(group.base) - group.vector @ iota for group in general.groups])
+    walls = wall_shares(system)
     if walls.any():
         found.append(Channel(place, np.zeros(system.n), walls, still, record.quantity != "displacement"))
     if not is_relative_damping(system) and system.modes.damping.any():
@@ -131,9 +139,10 @@ def drive_of(system: System, record: Record, scale: Scale) -> Drive:
     normal = _normal_loads(general, scale.time)
     channels += normal
     times, steps = _common(channels)
-    terms = [on_times(one.pieces, times, steps).terms for one in channels]
-    if all(one.pieces.times is times for one in channels):
-        terms = [one.pieces.terms for one in channels]
+    terms = [
+        one.pieces.terms if one.pieces.times is times else on_times(one.pieces, times, steps).terms
+        for one in channels
+    ]
     after, step = [], float(steps.max())
     for one, own in zip(channels, terms, strict=True):
         last = np.zeros((1, own.shape[1]))
@@ -145,8 +154,7 @@ def drive_of(system: System, record: Record, scale: Scale) -> Drive:
     table = np.stack([np.vstack(pair) for pair in zip(terms, after, strict=True)], axis=1)
     sizes = np.abs(table).max(axis=(0, 2))
     gaps = np.abs(table[1:, :, 0] - table[:-1].sum(axis=2))
-    # what the rounding of a sum of the terms leaves is no jump
-    jumps = np.concatenate(([False], (gaps > 1e-13 * sizes).any(axis=1)))
+    jumps = np.concatenate(([False], (gaps > SAME * sizes).any(axis=1)))
     return Drive(
         times, np.append(steps, step), np.ascontiguousarray(table), jumps,
         np.array([one.push for one in channels]).T, np.array([one.base for one in channels]).T,

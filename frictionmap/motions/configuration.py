@@ -36,17 +36,25 @@ class Task:
     ask: Callable[..., xr.Dataset]
 
 
-def _read(path: Path, overrides: Sequence[str]) -> tuple[Mapping[str, Any], str, tuple[Record, ...], Any]:
-    tree, text = read_tree(path, overrides)
-    common = common_tables(tree, path)
+def _records(tree: Mapping[str, Any], path: Path) -> tuple[tuple[Record, ...], tuple[Path, ...]]:
+    """The records of a configuration, and the files that they were read from."""
     if "record" not in tree:
         raise InputError("the configuration must have a table [record]; got none")
     given = checked_table(tree, "record")
     try:
-        records, files = records_of({k: v for k, v in given.items() if k not in _OF_MOTIONS}, path.parent)
+        return records_of({k: v for k, v in given.items() if k not in _OF_MOTIONS}, path.parent)
     except InputError as error:
         raise (within("record", error) if error.where else error) from None
-    return tree, text, records, (common, files)
+
+
+def _under_one_name(given: dict[str, Any], table: str, name: str, other: str) -> None:
+    """Put the friction under the name that a function takes."""
+    if other in given:
+        if name in given:
+            raise InputError(
+                "cannot use", f"{table}.{other}", f"with {table}.{name}: both are the friction; omit one"
+            )
+        given[name] = given.pop(other)
 
 
 def _count(*axes: object) -> int:
@@ -65,15 +73,12 @@ def load_history(path: str | Path, overrides: Sequence[str] = ()) -> Task:
         The file cannot be read or is not TOML; a key is unknown, missing or of the wrong type.
     """
     path = Path(path)
-    tree, text, records, (common, files) = _read(path, overrides)
+    tree, text = read_tree(path, overrides)
+    common = common_tables(tree, path)
+    records, files = _records(tree, path)
     given, record = dict(checked_table(tree, "history")), checked_table(tree, "record")
     arguments = {name: record[name] for name in _OF_MOTIONS if name in record}
-    if "friction" in given:
-        if "beta" in given:
-            raise InputError(
-                "cannot use", "history.friction", "with history.beta: both are the friction; omit one"
-            )
-        given["beta"] = given.pop("friction")
+    _under_one_name(given, "history", "beta", "friction")
     start = given.get("start")
     if isinstance(start, str) and start != "rest":
         given["start"] = str(path.parent / start)
@@ -94,14 +99,12 @@ def load_spectrum(path: str | Path, overrides: Sequence[str] = ()) -> Task:
     """
     path = Path(path)
     tree, text = read_tree(path, overrides)
-    title, records, files = _records(tree, path)
+    title = tree.get("title", path.stem)
+    if not isinstance(title, str):
+        raise InputError(f"title must be text; got {title!r}")
+    records, files = _records(tree, path)
     given, record = dict(checked_table(tree, "spectrum")), checked_table(tree, "record")
-    if "beta" in given:
-        if "friction" in given:
-            raise InputError(
-                "cannot use", "spectrum.beta", "with spectrum.friction: both are the friction; omit one"
-            )
-        given["friction"] = given.pop("beta")
+    _under_one_name(given, "spectrum", "friction", "beta")
     for key in ("period", "friction"):
         if key not in given:
             raise InputError(f"spectrum.{key}", "must be given; got nothing")
@@ -141,21 +144,6 @@ def _system_values(tree: Mapping[str, Any], path: Path, given: Mapping[str, Any]
     if stiffness is not None:
         found["contact_stiffness"] = stiffness
     return {name: value for name, value in found.items() if name not in given}
-
-
-def _records(tree: Mapping[str, Any], path: Path) -> tuple[str, tuple[Record, ...], tuple[Path, ...]]:
-    """Title and records of a configuration without a system."""
-    title = tree.get("title", path.stem)
-    if not isinstance(title, str):
-        raise InputError(f"title must be text; got {title!r}")
-    if "record" not in tree:
-        raise InputError("the configuration must have a table [record]; got none")
-    given = checked_table(tree, "record")
-    try:
-        found, files = records_of({k: v for k, v in given.items() if k not in _OF_MOTIONS}, path.parent)
-    except InputError as error:
-        raise (within("record", error) if error.where else error) from None
-    return title, found, files
 
 
 def _values(given: Any, name: str, kind: str) -> Any:

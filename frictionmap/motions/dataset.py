@@ -14,11 +14,11 @@ from ..datasets.motion_labels import IN_SI, MOTIONS, OF_CONTACTS, TIMES, motion_
 from ..datasets.provenance import excitation_of, now
 from ..errors import InputError
 from ..general.dataset import refuse_static
-from ..jobs import Progress, Watch
+from ..jobs import Progress, Watch, run_counted
 from ..model.system import System
 from ..units.scales import Scales, Units
 from ..version import __version__
-from .cells import Asked, Found, Motions, run_all
+from .cells import Asked, Found, Motions
 from .channels import checked_record, drive_of
 from .origins import record_attributes
 from .record import Record
@@ -86,12 +86,8 @@ def _every(given: Any, grid: Grid) -> int:
         every = 1 if given == "all" else 0
     else:
         every = checks.whole(given, "samples", least=1)
-    steps = {float(one.pieces.steps[0]) for one in grid.records}
-    if (
-        every
-        and len(grid.records) > 1
-        and (len(steps) > 1 or any(np.ptp(one.pieces.steps) != 0.0 for one in grid.records))
-    ):
+    several = grid.records if every and len(grid.records) > 1 else ()
+    if len(np.unique([step for one in several for step in one.pieces.steps])) > 1:
         raise InputError(
             "samples",
             f'must be "none" for records with different steps, which have no common times; got {given!r}',
@@ -161,7 +157,7 @@ def history(
 
     Examples
     --------
-    A block on a table under half a second of 3 m/s^2, with friction for 1 m/s^2, dimensionless:
+    A mass on a spring under a triangular pulse, with friction of a fifth of its peak:
 
     >>> import frictionmap as fm
     >>> pulse = fm.Record([0.0, 1.0, 0.0], dt=1.0, quantity="force")
@@ -258,7 +254,7 @@ def _follow(
 
     tasks = [task(*index) for index in product(*map(range, grid.shape))]
     tasks += [hold_task(i) for i in range(len(motions))]
-    run_all(tasks, checks.threads(threads), progress, watch)
+    run_counted([(one, ()) for one in tasks], checks.threads(threads), progress, watch)
     return Followed(motions, found, hold)
 
 

@@ -23,20 +23,15 @@ from .._kernels.history.spectrum_lanes import (
     X,
 )
 from ..errors import InputError
-from .pieces import Pieces
+from .cells import HOLDS
+from .pieces import SAME, Pieces, shifted
 from .record import Record
-
-#: A value and the one before it differ by no more than this share of the largest where nothing jumps.
-_ROUNDING = 1e-13
 
 #: Parts of samples in a block, of 88 bytes each.
 _BLOCK = 10**6
 
 #: Parts of a sample at most, for oscillators with a period far below its length.
 _MOST_PARTS = 10**6
-
-#: Friction that nothing overcomes, in lanes without an oscillator, and with a load of zero.
-_HOLDS = 1e150
 
 
 class Oscillators(NamedTuple):
@@ -96,7 +91,7 @@ class Responses(NamedTuple):
 def driven(pieces: Pieces, parts: int, base: bool) -> Driven:
     """A load in `parts` equal parts of every sample; base : see `Load`."""
     begins, ends = pieces.terms[:, 0], pieces.ends
-    joined = np.abs(begins[1:] - ends[:-1]) <= _ROUNDING * max(np.abs(begins).max(), np.abs(ends).max())
+    joined = np.abs(begins[1:] - ends[:-1]) <= SAME * max(np.abs(begins).max(), np.abs(ends).max())
     ends[:-1][joined] = begins[1:][joined]
     drive = Driven(pieces, ends, np.concatenate(([True], ~joined)), parts, base, [])
     if parts * ends.size <= _BLOCK:
@@ -107,11 +102,7 @@ def driven(pieces: Pieces, parts: int, base: bool) -> Driven:
 def _shifted(terms: np.ndarray, parts: int) -> np.ndarray:
     """Polynomials over equal parts of the intervals."""
     begin = np.tile(np.arange(parts) / parts, len(terms))
-    terms = np.repeat(terms, parts, axis=0)
-    for i in range(PIECE_TERMS - 1):
-        for k in range(PIECE_TERMS - 2, i - 1, -1):
-            terms[:, k] += begin * terms[:, k + 1]
-    return terms / float(parts) ** np.arange(PIECE_TERMS)
+    return shifted(np.repeat(terms, parts, axis=0), begin) / float(parts) ** np.arange(PIECE_TERMS)
 
 
 def _block(drive: Driven, first: int, last: int) -> Load:
@@ -166,7 +157,7 @@ def follow(drive: Driven, these: Oscillators) -> Responses:
     """Follow up to eight oscillators from rest through a record, and on until they rest permanently."""
     count = these.w.size
     cells = np.zeros((4, LANES))
-    cells[2], cells[3] = _HOLDS, 1.0
+    cells[2], cells[3] = HOLDS, 1.0  # in lanes without an oscillator nothing moves
     for row, values in zip(cells, these, strict=True):
         row[:count] = values
     state, begins = np.zeros((STATE_ROWS, LANES)), True

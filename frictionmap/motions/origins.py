@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..model.system import System
-from .channels import is_relative_damping
+from .channels import is_relative_damping, wall_shares
 from .pieces import integral
 from .record import Record
 
@@ -15,9 +15,9 @@ _DRIFTS = 0.01
 
 def uses_place(system: System) -> bool:
     """Whether the displacement or the velocity of the base acts on a structure, too."""
-    n = system.n
-    walls = [float(group.base) - group.vector @ np.ones(n) for group in system.contact_system.groups]
-    return any(walls) or (not is_relative_damping(system) and bool(system.modes.damping.any()))
+    return bool(wall_shares(system).any()) or (
+        not is_relative_damping(system) and bool(system.modes.damping.any())
+    )
 
 
 def end_velocity(record: Record) -> float:

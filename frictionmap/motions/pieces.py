@@ -14,6 +14,10 @@ INTERPOLATIONS = ("linear", "cubic", "hold")
 #: Samples whose distances differ by no more than this share are equally spaced: times in files are rounded.
 _EVEN = 1e-6
 
+#: A value and the one before it differ by no more than this share of the largest where nothing jumps: it is
+#: what the rounding of a sum of the terms leaves.
+SAME = 1e-13
+
 
 class Pieces(NamedTuple):
     """A function of time as polynomials."""
@@ -93,6 +97,15 @@ def integral(given: Pieces) -> Pieces:
     return given._replace(terms=terms)
 
 
+def shifted(terms: np.ndarray, begin: np.ndarray) -> np.ndarray:
+    """Coefficients (K, PIECE_TERMS) of the same polynomials from x = begin (K,) on."""
+    found = terms.copy()
+    for i in range(PIECE_TERMS - 1):
+        for n in range(PIECE_TERMS - 2, i - 1, -1):
+            found[:, n] += begin * found[:, n + 1]
+    return found
+
+
 def on_times(given: Pieces, times: np.ndarray, steps: np.ndarray) -> Pieces:
     """The same function over other intervals, each within one of its own; zero after its end."""
     middle = times[:-1] + 0.5 * steps
@@ -101,10 +114,7 @@ def on_times(given: Pieces, times: np.ndarray, steps: np.ndarray) -> Pieces:
     k = np.minimum(k, given.steps.size - 1)
     begin = (times[:-1] - given.times[k]) / given.steps[k]
     share = steps / given.steps[k]
-    terms = given.terms[k].copy()
-    for i in range(PIECE_TERMS - 1):
-        for n in range(PIECE_TERMS - 2, i - 1, -1):
-            terms[:, n] += begin * terms[:, n + 1]
+    terms = shifted(given.terms[k], begin)
     terms *= share[:, np.newaxis] ** np.arange(PIECE_TERMS)
     return Pieces(times, steps, np.where(inside[:, np.newaxis], terms, 0.0))
 

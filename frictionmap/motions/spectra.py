@@ -11,7 +11,7 @@ from .. import checks
 from ..datasets.labels import REFERENCES
 from ..datasets.provenance import now
 from ..errors import InputError
-from ..jobs import Progress, Watch, run_jobs
+from ..jobs import Progress, Watch, run_counted
 from ..units.quantities import quantities
 from ..units.table import UNITS
 from ..version import __version__
@@ -216,15 +216,7 @@ def _followed(grid: Grid, threads: int, progress: Progress | None, watch: Watch 
             if count not in drives:
                 drives[count] = driven(pieces, count, record.quantity != "force")
             jobs.append((_run, (drives[count], these, members, found[:, k])))
-    done = 0
-
-    def count_one(_: int) -> None:
-        nonlocal done
-        done += 1
-        if progress is not None:
-            progress(done, len(jobs))
-
-    run_jobs(jobs, threads, count_one, watch)
+    run_counted(jobs, threads, progress, watch)
     for name in ("amplitude", "acceleration_amplitude", "sliding_distance"):
         found[Responses._fields.index(name)] *= np.abs(scale)
     found[Responses._fields.index("residual")] *= scale

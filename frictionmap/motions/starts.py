@@ -8,12 +8,10 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
+from .._kernels.history.motion import BY_LAW
 from ..errors import InputError
 from ..files.opening import open as open_dataset
 from .structure import Structure
-
-#: Sense of a contact that its law decides.
-BY_LAW = 9
 
 
 class Start(NamedTuple):

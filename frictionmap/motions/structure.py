@@ -8,7 +8,6 @@ from .._kernels.general.problem import Problem
 from ..general.problem import ModalSystem, fastest, modal_system, refuse_loop, springs, ties
 from ..model.general import in_general_form
 from ..model.system import System
-from .bed import Held, held
 from .channels import Drive
 
 
@@ -55,11 +54,6 @@ def problem_of(structure: Structure, drive: Drive) -> Problem:
         np.empty((1, 2, drive.push.shape[1], 0)), np.array([structure.rate]),
         np.array([size if size > 0.0 else 1.0]), False,
     )  # fmt: skip
-
-
-def held_of(problem: Problem) -> Held:
-    """The structure with all contacts held."""
-    return held(problem)
 
 
 def watched_of(structure: Structure, problem: Problem, drive: Drive) -> Watched:

@@ -66,7 +66,7 @@ def _keep_end(problem, motion, table, at):
 
 
 @kernel
-def _begin_with(problem, motion, unit, q):
+def begin_with(problem, motion, unit, q):
     """Set one unit to 1, and all others and the load to zero.
 
     Parameters
@@ -107,7 +107,7 @@ def _fill_units(problem, row, motion, unit, slot):
     for q in range(units):
         if q >= size and motion.sense[q - size] == 0:
             continue
-        _begin_with(problem, motion, unit, q)
+        begin_with(problem, motion, unit, q)
         expand(problem, row, unit, 0.0, -1, motion, False)
         first = slot * contacts * units + q
         _keep_controls(problem, row, motion, True, parts.controls, parts.bounds, first, units)
@@ -129,7 +129,7 @@ def _fill_load(problem, row, motion, unit, interval, at):
     """
     contacts = problem.spring.size
     parts = row.parts
-    _begin_with(problem, motion, unit, state_size(problem) + contacts)
+    begin_with(problem, motion, unit, state_size(problem) + contacts)
     motion.clock[0] = math.nan
     expand(problem, row, unit, SECTION + interval * row.numbers[H], interval, motion, False)
     _keep_controls(problem, row, motion, False, parts.load_controls, parts.load_bounds, at * contacts, 1)

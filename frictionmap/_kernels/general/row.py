@@ -142,16 +142,21 @@ def _fill_channels(problem, row, tau, series, first):
 
 
 @kernel
+def shift_piece(series, at, x):
+    """Replace the polynomial in row `at`, of PIECE_TERMS, by the same one from x on."""
+    for i in range(PIECE_TERMS - 1):
+        for k in range(PIECE_TERMS - 2, i - 1, -1):
+            series[at, k] += x * series[at, k + 1]
+
+
+@kernel
 def _shift_pieces(row, x, series, first, channels):
     """Fill the series of channels that are polynomials over the interval, kept in `row.loads`, from x on."""
     for d in range(channels):
         for k in range(0, WIDTH, LANES):
             store(load(row.loads, d * WIDTH + k), series, (first + d) * WIDTH + k)
-        if x == 0.0:
-            continue
-        for i in range(PIECE_TERMS - 1):
-            for k in range(PIECE_TERMS - 2, i - 1, -1):
-                series[first + d, k] += x * series[first + d, k + 1]
+        if x != 0.0:
+            shift_piece(series, first + d, x)
 
 
 @kernel

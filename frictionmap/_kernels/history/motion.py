@@ -16,7 +16,7 @@ from ..general.laws.kinds import has_constraint
 from ..general.pattern import BOX_ROWS, PARTICIPATES, settle, slide_velocity, stop_exactly
 from ..general.problem import PIECE_TERMS, SIZE, TURN, F, H, Motion, P, Q, Row, force_row, normal_row
 from ..general.record import clear_record
-from ..general.row import make_motion, make_row, set_channels, set_interval
+from ..general.row import make_motion, make_row, set_channels, set_interval, shift_piece
 from ..general.series import advance, expand, factor_held
 from .asleep import is_asleep
 from .kept import keep_ends, keep_present, keep_step, list_changes, store_state
@@ -173,9 +173,7 @@ def _put_pieces(row, pieces, part, parts):
     for d in range(pieces.shape[0]):
         for k in range(PIECE_TERMS):
             row.loads[d, k] = pieces[d, k]
-        for i in range(PIECE_TERMS - 1):
-            for k in range(PIECE_TERMS - 2, i - 1, -1):
-                row.loads[d, k] += begin * row.loads[d, k + 1]
+        shift_piece(row.loads, d, begin)
         scale = 1.0
         for k in range(PIECE_TERMS):
             row.loads[d, k] *= scale

@@ -24,12 +24,12 @@ from ..compiler.packed import packed
 from ..compiler.vectors import LANES, filled, load, store
 from ..general.counts import STUCK
 from ..general.crossings import value_at
+from ..general.glide import begin_with
 from ..general.laws.kinds import has_force, state_size
 from ..general.problem import (
     LONG,
     PIECE_TERMS,
     TERMS,
-    WIDTH,
     F,
     H,
     P,
@@ -118,25 +118,12 @@ def _weighted(series, at, order):
 
 
 @kernel
-def _begin_with(problem, row, motion, unit, q):
+def _begin_with(problem, motion, unit, q):
     """Set one unit to 1 and all others to zero; see `Tables`."""
-    modes, channels = problem.push.shape
-    size, contacts = state_size(problem), problem.spring.size
-    for part in range(3):
-        for i in range(motion.state.shape[1]):
-            motion.state[part, i] = 0.0
-    for j in range(contacts):
-        unit.kinetic[j] = motion.sense[j] if q == size + j else 0.0
-    if q < 2 * modes:
-        motion.state[q // modes, q % modes] = 1.0
-    elif q < size:
-        motion.state[F, q - 2 * modes] = 1.0
-    for k in range(0, channels * WIDTH, LANES):
-        store(filled(0.0), motion.series, modes * WIDTH + k)
-    at = q - size - contacts
+    begin_with(problem, motion, unit, q)
+    at = q - state_size(problem) - problem.spring.size
     if at >= 0:
-        motion.series[modes + at // PIECE_TERMS, at % PIECE_TERMS] = 1.0
-    motion.clock[0] = 0.0
+        motion.series[problem.push.shape[0] + at // PIECE_TERMS, at % PIECE_TERMS] = 1.0
 
 
 @kernel
@@ -202,7 +189,7 @@ def _fill_set(problem, row, motion, kept, tables, slot):
         for i in range(motion.state.shape[1]):
             tables.state[part, i] = motion.state[part, i]
     for q in range(count):
-        _begin_with(problem, row, motion, unit, q)
+        _begin_with(problem, motion, unit, q)
         expand(problem, row, unit, 0.0, -1, motion, True)
         _fill_unit(problem, row, motion, kept, tables, slot * count + q)
     for part in range(3):

@@ -17,6 +17,7 @@ class Held(NamedTuple):
 
     bed: Bed
     rest: np.ndarray  # (m, 2 m + N) modes at the place of rest
+    slowest: float  # lowest natural frequency of the held structure; infinite if nothing vibrates
     restored: bool  # whether every motion that the contacts leave has one
 
 
@@ -68,5 +69,5 @@ def held(problem: Problem) -> Held:
             np.ascontiguousarray(vibration), np.ascontiguousarray(forces), gains,
             np.array([not belt], dtype=np.int64),
         ),
-        np.ascontiguousarray(rest), bool(restored.all()),
+        np.ascontiguousarray(rest), float(omega.min(initial=np.inf)), bool(restored.all()),
     )  # fmt: skip

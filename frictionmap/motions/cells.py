@@ -22,6 +22,13 @@ _MOST_AFTER = 200_000
 #: Rounding error of a sum, relative to its terms.
 _ROUNDING = 2.0**-50
 
+#: Longest periods of the held structure after a record in which its largest force is looked for: undamped
+#: modes of several frequencies come nearer and nearer to their bound without an end.
+_MOST_PERIODS = 100.0
+
+#: A bound within this share of a force is that force with rounding error.
+_SAME = 1e-12
+
 #: Friction that nothing overcomes.
 HOLDS = 1e150
 
@@ -133,11 +140,15 @@ class Motions:
         last = steps.size - 1
         return float(self.drive.times[min(intervals, last)] + max(0, intervals - last) * steps[-1])
 
+    def _state(self, one: Found) -> np.ndarray:
+        """q, q' and forces of springs at the end."""
+        springs = np.where(self.structure.spring > 0.0, one.kept.forces, 0.0)
+        return np.concatenate((one.state[0], one.state[1], springs))
+
     def _place(self, one: Found) -> np.ndarray | None:
         """Where the masses come to rest."""
         if one.asleep == one.asleep and self.held.restored:
-            springs = np.where(self.structure.spring > 0.0, one.kept.forces, 0.0)
-            return self.held.rest @ np.concatenate((one.state[0], one.state[1], springs))
+            return self.held.rest @ self._state(one)
         return one.state[0] if one.status == CREEPING else None
 
     def contact_places(self, one: Found) -> np.ndarray:
@@ -148,9 +159,25 @@ class Motions:
         return np.where(moving, np.nan, places)
 
     def hold(self, asked: Asked) -> np.ndarray:
-        """Largest force in every contact with all contacts held, (N,)."""
+        """Largest force in every contact with all contacts held, (N,).
+
+        After the record the free vibration is followed until its energy bounds all later forces by those seen.
+        """
         friction = np.full(self.structure.spring.size, HOLDS)
-        asked = Asked(asked.start, 0.0 if asked.after is None else asked.after, 0)
-        found = self.follow(friction, friction, 1.0, asked, False)
         rows = self.watched.places["friction"]
-        return np.abs(found.kept.peaks[:2, rows]).max(axis=0)
+        period = 2.0 * np.pi / self.held.slowest
+        after = asked.after
+        if after is None:
+            after = period if self.held.bed.active[0] else 0.0
+        while True:
+            found = self.follow(friction, friction, 1.0, asked._replace(after=after, every=0), False)
+            forces = np.abs(found.kept.peaks[:2, rows]).max(axis=0)
+            done = asked.after is not None or not 0.0 < after < _MOST_PERIODS * period
+            if done or (self._bound(found) <= forces * (1.0 + _SAME)).all():
+                return forces
+            after *= 2.0
+
+    def _bound(self, one: Found) -> np.ndarray:
+        """Bound on the forces in contacts that stay held, without load, from the energy at the end, (N,)."""
+        bed, state = self.held.bed, self._state(one)
+        return np.abs(bed.forces @ state) + np.linalg.norm(bed.vibration @ state) * bed.gains

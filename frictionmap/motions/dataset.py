@@ -136,7 +136,7 @@ def history(
         `history`, or the state at tau = 0 of a `response`.
     after : "rest" or float
         How long the motion is followed after the record, without load: until no contact can move again,
-        which is proved by the energy, or a time.
+        which is proved by the energy, or a time, in seconds for records with a unit.
     samples : "all", int or "none"
         Which samples of the histories are kept: all, every so many, none.  A single motion has both sides of
         all events, too.
@@ -232,9 +232,12 @@ def _follow(
     progress: Progress | None, watch: Watch | None,
 ) -> Followed:  # fmt: skip
     general = structure.system.contact_system
+    factors = [scale_of(one, scales) for one in grid.records]
     motions = [
-        Motions(structure, drive_of(structure.system, one, scale_of(one, scales))) for one in grid.records
+        Motions(structure, drive_of(structure.system, one, factor))
+        for one, factor in zip(grid.records, factors, strict=True)
     ]
+    each = [asked._replace(after=asked.after and asked.after * factor.time) for factor in factors]
     found = np.empty(grid.shape, dtype=object)
     hold = np.empty((len(motions), general.count))
 
@@ -242,13 +245,13 @@ def _follow(
         def run() -> None:
             pairs = [group.friction(grid.beta[b], grid.mu[m]) for group in general.groups]
             kinetic, static = np.array(pairs, dtype=float).T
-            found[i, k, m, b] = motions[i].follow(kinetic, static, float(grid.scale[k]), asked, single)
+            found[i, k, m, b] = motions[i].follow(kinetic, static, float(grid.scale[k]), each[i], single)
 
         return run
 
     def hold_task(i: int) -> Callable[[], None]:
         def run() -> None:
-            hold[i] = motions[i].hold(asked)
+            hold[i] = motions[i].hold(each[i])
 
         return run
 

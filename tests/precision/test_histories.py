@@ -283,3 +283,22 @@ def test_a_limit_that_is_touched_holds(values, how, mu, events):
     assert ds.events.item() == events
     if not events:
         assert ds.x_max.item() == 0.0
+
+
+def test_nothing_moves_after_the_record_either():
+    """A kick on the upper mass arrives at the contact of the lower one when the record is over."""
+    system = fm.System(
+        mass_ratios=[1.0, 1.0], stiffness_ratios=[1.0, 1.0], damping_ratios=0.02,
+        contacts=[fm.Contact("fixed-wall", 1)],
+    )  # fmt: skip
+    kick = fm.Record([0.0, 1.0, 0.0], 0.1, quantity="force", mass=2)
+    hold = fm.history(system, kick, beta=1.0, samples="none").beta_hold.item()
+    assert fm.history(system, kick, beta=hold * (1.0 + 1e-9), samples="none").events.item() == 0
+    assert fm.history(system, kick, beta=hold * (1.0 - 1e-9), samples="none").events.item() > 0
+
+
+def test_the_time_after_a_record_in_seconds_is_in_seconds():
+    units = fm.Units(natural_frequency="2 Hz")
+    quake = fm.Record([0.0, 1.0, -1.0, 0.0], 0.1, unit="m/s^2")
+    ds = fm.history(fm.System(), quake, beta=0.1, units=units, after=1.5)
+    assert ds.end_time.item() == pytest.approx(0.3 + 1.5, rel=1e-12)

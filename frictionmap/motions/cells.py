@@ -161,7 +161,7 @@ class Motions:
     def hold(self, asked: Asked) -> np.ndarray:
         """Largest force in every contact with all contacts held, (N,).
 
-        After the record the free vibration is followed until its energy bounds all later forces by those seen.
+        After the record the free vibration is followed until its energy bounds all later forces.
         """
         friction = np.full(self.structure.spring.size, HOLDS)
         rows = self.watched.places["friction"]

@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import checks
 from ..errors import InputError
 from ..model.general import ContactSystem
 from ..model.system import System
@@ -161,8 +160,3 @@ def drive_of(system: System, record: Record, scale: Scale) -> Drive:
         np.array([one.normal for one in channels]).T,
         np.concatenate((acceleration, np.zeros(len(normal)))),
     )  # fmt: skip
-
-
-def checked_record(given: object, name: str) -> Record:
-    """Check that a value is a record."""
-    return checks.instance(given, name, Record)

@@ -19,9 +19,9 @@ from ..model.system import System
 from ..units.scales import Scales, Units
 from ..version import __version__
 from .cells import Asked, Found, Motions
-from .channels import checked_record, drive_of
+from .channels import drive_of
 from .origins import record_attributes
-from .record import Record
+from .record import Record, checked_records
 from .scaling import friction_ratios, motion_scales, scale_of
 from .starts import start_of
 from .structure import Structure, structure_of
@@ -61,14 +61,6 @@ def _axis(given: Any, name: str, **ends: float) -> np.ndarray:
     if (np.diff(found) <= 0.0).any():
         raise InputError(name, f"must increase; got {checks.one_line(found.tolist())}")
     return found
-
-
-def _records(given: Any) -> tuple[Record, ...]:
-    listed = given if isinstance(given, Sequence) else (given,)
-    if not listed:
-        raise InputError("record", "must be a Record or a list of them; got none")
-    names = ["record"] if listed is not given else [f"record[{k}]" for k in range(len(listed))]
-    return tuple(checked_record(one, name) for one, name in zip(listed, names, strict=True))
 
 
 def _after(given: Any) -> float | None:
@@ -169,7 +161,10 @@ def history(
     scales = motion_scales(units, system)
     beta = friction_ratios(1.0 if beta is None else beta, "beta", scales)
     grid = Grid(
-        _records(record), _axis(scale, "scale"), _axis(mu, "mu", least=1.0), _axis(beta, "beta", least=0.0)
+        checked_records(record, "record"),
+        _axis(scale, "scale"),
+        _axis(mu, "mu", least=1.0),
+        _axis(beta, "beta", least=0.0),
     )
     structure = structure_of(system)
     refuse_static(structure.system.contact_system, grid.mu)

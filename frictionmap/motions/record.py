@@ -3,7 +3,7 @@
 import math
 import os
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -523,3 +523,14 @@ def _times(given: object, count: int) -> np.ndarray:
         k = int(np.argmax(falls)) + 1
         raise InputError(f"time[{k}]", f"must be above the one before it, {times[k - 1]:g}; got {times[k]:g}")
     return times
+
+
+def checked_records(given: Any, name: str) -> tuple[Record, ...]:
+    """One record or several of them, checked; `name` is the argument."""
+    several = isinstance(given, Sequence)
+    listed = tuple(given) if several else (given,)
+    if not listed:
+        raise InputError(name, "must be a Record or a list of them; got none")
+    for k, one in enumerate(listed):
+        checks.instance(one, f"{name}[{k}]" if several else name, Record)
+    return listed

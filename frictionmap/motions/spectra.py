@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from .. import checks
 from ..datasets.labels import REFERENCES
+from ..datasets.motion_labels import STATUSES
 from ..datasets.provenance import now
 from ..errors import InputError
 from ..jobs import Progress, Watch, run_counted
@@ -19,7 +20,7 @@ from .elastic_spectra import follow_elastic
 from .lanes import Driven, Grid, Oscillators, Responses, driven, follow, in_lanes, parts_of
 from .origins import record_attributes
 from .pieces import Pieces, derivative
-from .record import Record
+from .record import Record, checked_records
 
 DIMS = ("record", "scale", "mu", "period", "beta")
 
@@ -36,16 +37,12 @@ VARIABLES = {
 }
 
 _LENGTHS = ("amplitude", "residual", "sliding_distance")
-_STATUSES = "resolved ringing creeping too_many_events"
+#: What may become of an oscillator.
+_STATUSES = STATUSES[:4]
 
 
 def _records(given: Any) -> tuple[Record, ...]:
-    several = isinstance(given, Sequence)
-    listed = tuple(given) if several else (given,)
-    if not listed:
-        raise InputError("records", "must be a Record or a list of them; got none")
-    for k, one in enumerate(listed):
-        checks.instance(one, f"records[{k}]" if several else "records", Record)
+    listed = checked_records(given, "records")
     units = {one.unit is None for one in listed}
     if len(units) > 1:
         raise InputError("records", "must all have a unit, or none; got some with and some without")
@@ -237,7 +234,8 @@ def _labelled(grid: Grid, found: np.ndarray) -> xr.Dataset:
         if name in _LENGTHS and grid.records[0].quantity != "force":
             attrs["comment"] = "relative to the base"
         if name == "status":
-            attrs |= {"flag_values": np.arange(4, dtype=np.int8), "flag_meanings": _STATUSES}
+            attrs |= {"flag_values": np.array([code.value for code in _STATUSES], dtype=np.int8)}
+            attrs["flag_meanings"] = " ".join(code.name for code in _STATUSES)
         variables[name] = (DIMS, values.astype(kind), attrs)
     coords = {
         "record": ("record", np.arange(1, len(grid.records) + 1), {"long_name": "record, counted from 1"}),

@@ -41,7 +41,7 @@ class Begun(NamedTuple):
 
 
 def begun(test: DamperTest, held: np.ndarray) -> Begun:
-    """Fit the displacement, and then the force; `held`: (named,), NaN of what is fitted.
+    """Fit the displacement, and then the force; `held`: (named,), NaN of parameters that are fitted.
 
     Where the force may drop as the contact breaks away, the sample at which it does hops with the
     parameters, and the sum has many minima.  The sum in which the measured force shows this sample has none

@@ -141,7 +141,7 @@ def _checked_test(
 def _held(
     known: Mapping[str, float], free: Sequence[str] | None, test: DamperTest
 ) -> tuple[np.ndarray, list[str]]:
-    """Values of what is held, NaN of what is fitted, and the names that were given."""
+    """Values of held parameters, NaN of fitted ones, and the names that were given."""
     values = {}
     for name, value in known.items():
         checks.choice(name, "known", test.names)

@@ -20,6 +20,7 @@ cell               one cell: its motion, and that from another initial state
 cut                response curves through a view
 subjects           responses that a goal can be about
 goal               the friction that meets the goal of a design
+typed              numbers typed into the page as ratios: they may have units
 packets            binary packets for the page
 presets            systems that the page offers besides its own
 scene_description  description of a scene for the page: names, ranges, parameters that can be changed, colours

@@ -16,7 +16,7 @@ from .drawing import drawing_curves, drawing_of
 from .lines import values_of_lines
 from .numbers import numbers_of
 from .quantities import counted_of
-from .queries import PAGE, Query, needed, number
+from .queries import PAGE, Query, needed
 from .sentences import describe_motion
 from .views import Follower, View
 
@@ -39,7 +39,7 @@ def read(query: Query) -> tuple[float, float]:
         raise InputError(
             f"at must be r and beta separated by a comma; got {checks.one_line(query.given['at'])}"
         )
-    r, beta = (number(part, name) for part, name in zip(parts, ("r", "beta"), strict=True))
+    r, beta = query.cell(*parts)
     r = checks.number(r, "r", above=0.0, most=checks.LARGEST_RATIO)
     return r, checks.number(beta, "beta", least=0.0)
 

@@ -7,8 +7,9 @@ import numpy as np
 from .. import checks
 from ..model.settings import Quantity, curve_settings
 from ..pictures.classes import of_cells
+from ..units.axes import KINDS
 from .quantities import counted_of
-from .queries import PAGE, Query, needed, number, points_of
+from .queries import PAGE, Query, needed, points_of
 from .views import Follower, View, middles
 
 Along = Literal["r", "beta"]
@@ -38,7 +39,8 @@ def read(query: Query) -> tuple[Along, float, int]:
     """Axis of a cut, value of the other axis, number of points."""
     valid: tuple[Along, ...] = get_args(Along)
     along: Any = checks.choice(needed(query.given, "along"), "along", valid)
-    place = checks.number(number(needed(query.given, "place"), "place"), "place", least=0.0)
+    kind = KINDS["beta" if along == "r" else "r"]
+    place = checks.number(query.ratio(needed(query.given, "place"), "place", kind), "place", least=0.0)
     return along, place, points_of(query)
 
 

@@ -12,7 +12,7 @@ from ..design.questions.record import Question
 from ..design.watching import watched
 from ..errors import InputError, NoSteadyState
 from ..units.scales import NO_SCALES
-from .queries import PAGE, Query, needed, number
+from .queries import PAGE, Query, needed
 from .subjects import Subject, subjects_of
 from .views import Follower, View
 
@@ -56,13 +56,23 @@ def read(query: Query) -> tuple[Goal]:
     """
     given = query.given
     question = checks.choice(needed(given, "goal"), "goal", tuple(one.name for one in goals()))
-    band = tuple(number(part, "band") for part in needed(given, "band").split(","))
+    band = band_of(query)
     if not record(question).of_response:
         return (Goal(question, band, None, None),)
     known = {one.key: one for one in subjects_of(query.view.system)}
     subject = known[checks.choice(given.get("of", next(iter(known))), "of", tuple(known))]
-    limit = number(needed(given, "limit"), "limit") if record(question).has_limit else None
+    limit = limit_of(query) if record(question).has_limit else None
     return (Goal(question, band, subject, limit),)
+
+
+def band_of(query: Query) -> tuple[float, ...]:
+    """Requested band of frequency ratios, not checked yet."""
+    return tuple(query.ratios(needed(query.given, "band").split(","), "band", "frequency"))
+
+
+def limit_of(query: Query) -> float:
+    """Requested limit of a response, which is a length, not checked yet."""
+    return query.ratio(needed(query.given, "limit"), "limit", "length")
 
 
 def answer_goal(view: View, goal: Goal, follower: Follower) -> dict[str, Any]:

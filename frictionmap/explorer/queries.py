@@ -1,6 +1,6 @@
 """Queries of the page, checked like a configuration: every key valid, given once and of the right type."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple, get_args
 from urllib.parse import parse_qsl
@@ -8,9 +8,13 @@ from urllib.parse import parse_qsl
 from .. import checks
 from ..errors import InputError
 from ..model.settings import Start
+from ..units.axes import KINDS, has_units, require
+from ..units.quantities import quantity
+from ..units.scales import Scales, Units, rounded, scales_of
 from .contacts import shown_contact
 from .quantities import CellQuantity, quantities_of
 from .scene import Scene, checked_range
+from .scene_parts import Slider
 from .views import MOST_PIXELS, Piece, View
 
 #: Keys of a query; a page of many masses has some tens.
@@ -23,10 +27,29 @@ _VIEW = ("r", "beta", "mu", "start", "contact")
 
 
 class Query(NamedTuple):
-    """A checked query: the view, and what else was given."""
+    """A checked query: the view, what else was given, and the units of the scene."""
 
     view: View
     given: Mapping[str, str]
+    units: Units | None = None
+    numbers: Mapping[str, float] = {}  # of the sliders
+
+    def ratio(self, text: str, name: str, kind: str) -> float:
+        """Convert a number of a query, which may have a unit of its kind: a ratio."""
+        return _ratio(text, name, kind, lambda: scales_of(self.units, self.view.system))
+
+    def ratios(self, parts: Sequence[str], name: str, kind: str) -> list[float]:
+        """Convert several numbers of one kind, of which all have a unit or none: ratios."""
+        return _ratios(parts, name, kind, lambda: scales_of(self.units, self.view.system))
+
+    def cell(self, r: str, beta: str) -> tuple[float, float]:
+        """Convert frequency and friction of a cell to ratios; one message names all that lack a reference."""
+        given = {"r": r, "beta": beta}
+        if has_units([r, beta]):
+            of_both = {name: (KINDS[name], text) for name, text in given.items()}
+            require(scales_of(self.units, self.view.system), **of_both)
+        at_r, at_beta = (self.ratio(text, name, KINDS[name]) for name, text in given.items())
+        return at_r, at_beta
 
 
 def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
@@ -37,25 +60,34 @@ def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
     text : the query of an address, such as "r=0.5,1.5&mu=1.2&damping_ratios=0.01"
     further : valid keys other than those of a view
 
+    Numbers may have units, such as "beta=0 N,50 N", where the scene has their reference values.
+
     Raises
     ------
     InputError
         A key is unknown or given twice, or a value is invalid.
     """
-    numbers = tuple(slider.key for slider in scene.sliders if slider.key != "mu")
+    numbers = {slider.key: slider for slider in scene.sliders if slider.key != "mu"}
     given = _read(text, (*_VIEW, *numbers, *further))
     start = given.get("start", scene.solver.start)
     checks.choice(start, "start", get_args(Start))
-    changes = tuple((key, number(given[key], key)) for key in numbers if key in given)
+    contact = given.get("contact", "")
+
+    def scales() -> Scales:
+        return scales_of(scene.units, scene.changed(contact, ()))
+
+    changes = tuple(
+        (key, _slider_ratio(given[key], slider, scales)) for key, slider in numbers.items() if key in given
+    )
     view = View(
-        system=scene.changed(given.get("contact", ""), changes),
-        r=_range(given, "r", scene.r),
-        beta=_range(given, "beta", scene.beta),
+        system=scene.changed(contact, changes),
+        r=_range(given, "r", scene.r, scales),
+        beta=_range(given, "beta", scene.beta, scales),
         mu=checks.number(number(given["mu"], "mu"), "mu", least=1.0) if "mu" in given else scene.mu,
         solver=replace(scene.solver, start=start),  # type: ignore[arg-type]
-        contact=shown_contact(given.get("contact", "")),
+        contact=shown_contact(contact),
     )
-    return Query(view, given)
+    return Query(view, given, scene.units, dict(changes))
 
 
 def _read(text: str, valid: Sequence[str]) -> dict[str, str]:
@@ -86,6 +118,37 @@ def number(text: str, name: str) -> float:
     return checks.number(value, name)
 
 
+def _ratio(text: str, name: str, kind: str, scales: Callable[[], Scales]) -> float:
+    """Convert a number, which may have a unit of its kind: a ratio.
+
+    scales : gives the reference values; it is asked only about a number with a unit
+    """
+    if not has_units(text):
+        return number(text, name)
+    value = quantity(text, name, kind).value / scales().needed(kind, name, text)
+    return checks.number(rounded(value), name)
+
+
+def _ratios(parts: Sequence[str], name: str, kind: str, scales: Callable[[], Scales]) -> list[float]:
+    """Convert several numbers of one kind: all of them have a unit, or none."""
+    if has_units(list(parts)):
+        for part in parts:
+            quantity(part, name, kind)
+    return [_ratio(part, name, kind, scales) for part in parts]
+
+
+def _slider_ratio(text: str, slider: Slider, scales: Callable[[], Scales]) -> float:
+    """Convert the number of a slider, which may have a unit if it has a dimension."""
+    if slider.measure or not has_units(text):
+        return _ratio(text, slider.key, slider.measure, scales)
+    relative = f", {slider.unit}" if slider.unit else ""
+    speed = slider.key.endswith("wall_velocity")  # it grows with the frequency
+    hint = "; for a speed that is the same at all frequencies set wall_speed in the configuration" * speed
+    raise InputError(
+        f"{slider.key} must be a number without a unit{relative}; got {checks.one_line(text)}{hint}"
+    )
+
+
 def _whole(given: Mapping[str, str], name: str, default: int | None = None) -> int:
     if name not in given and default is not None:
         return default
@@ -103,7 +166,9 @@ def needed(given: Mapping[str, str], name: str) -> str:
     return given[name]
 
 
-def _range(given: Mapping[str, str], name: str, default: tuple[float, float]) -> tuple[float, float]:
+def _range(
+    given: Mapping[str, str], name: str, default: tuple[float, float], scales: Callable[[], Scales]
+) -> tuple[float, float]:
     if name not in given:
         return default
     parts = given[name].split(",")
@@ -111,7 +176,7 @@ def _range(given: Mapping[str, str], name: str, default: tuple[float, float]) ->
         raise InputError(
             f"{name} must be two numbers separated by a comma; got {checks.one_line(given[name])}"
         )
-    return checked_range([number(part, name) for part in parts], name)
+    return checked_range(_ratios(parts, name, KINDS[name], scales), name)
 
 
 #: Keys of a page, of boundaries, and of a piece of a map.

@@ -109,6 +109,7 @@ class Page:
         self._work: dict[str, Callable[[str, Callable[[], bool]], Answer]] = {
             "/scene": self._scene,
             "/state": self._state,
+            "/ratios": self._ratios,
             "/lines": self._lines,
             "/example": self._example,
             "/map": self._map,
@@ -193,6 +194,11 @@ class Page:
 
     def _state(self, query: str, gone: Callable[[], bool]) -> Answer:
         return _json({"compiling": self.jobs.state()})
+
+    def _ratios(self, text: str, gone: Callable[[], bool]) -> Answer:
+        from . import queries, typed
+
+        return _json(typed.typed(queries.read_query(self.scene, text, typed.KEYS)))
 
     def _enter(self, kind: str, query: "Query", gone: Callable[[], bool], kernels: str = "") -> Any:
         """Start a job in the lane of the page for a kind of work, or in a lane of its own without a page.

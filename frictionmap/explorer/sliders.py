@@ -27,9 +27,9 @@ def _upward(
     return Slider(key, label, ends[0], max(ends[1], 2.0 * value), value, scale, unit, measure)
 
 
-def _scaled(key: str, label: str, value: float, unit: str) -> Slider:
+def _scaled(key: str, label: str, value: float, unit: str, measure: str = "") -> Slider:
     """A slider from a small share of a number to a large multiple of it."""
-    return Slider(key, label, value / _RATIO, value * _RATIO, value, "log", unit)
+    return Slider(key, label, value / _RATIO, value * _RATIO, value, "log", unit, measure)
 
 
 def _mu(system: System, mu: float) -> tuple[Slider, ...]:
@@ -65,13 +65,13 @@ def _contacts(system: System) -> tuple[Slider, ...]:
         found += _friction(contact, key, name, several=len(given) > 1)
         if isinstance(contact.stiffness, float):
             own, label = ("contact_", "contact stiffness kt / k1") if alone else ("", f"kt / k1{name}")
-            found.append(_scaled(f"{key}{own}stiffness", label, contact.stiffness, "times k1"))
+            found.append(_scaled(f"{key}{own}stiffness", label, contact.stiffness, "times k1", "stiffness"))
         if contact.wall_velocity > 0.0:
             label = "wall velocity v / (ωP/k1)" if alone else f"wall velocity{name}"
             found.append(_scaled(f"{key}wall_velocity", label, contact.wall_velocity, "times ωP/k1"))
         if contact.wall_speed > 0.0:
             label = "wall speed v / (ω1P/k1)" if alone else f"wall speed{name}"
-            found.append(_scaled(f"{key}wall_speed", label, contact.wall_speed, "times ω1P/k1"))
+            found.append(_scaled(f"{key}wall_speed", label, contact.wall_speed, "times ω1P/k1", "velocity"))
     return tuple(found)
 
 
@@ -91,7 +91,7 @@ def _ratios(system: System) -> tuple[Slider, ...]:
     if system.matrices is not None or not 1 < system.n <= _OFFERED:
         return ()
     return tuple(
-        _scaled(f"{key}[{k}]", f"{letter}{k} / {letter}1", value, f"times {letter}1")
-        for key, letter in (("mass_ratios", "m"), ("stiffness_ratios", "k"))
+        _scaled(f"{key}[{k}]", f"{letter}{k} / {letter}1", value, f"times {letter}1", measure)
+        for key, letter, measure in (("mass_ratios", "m", "mass"), ("stiffness_ratios", "k", "stiffness"))
         for k, value in enumerate(getattr(system, key)[1:], start=2)
     )

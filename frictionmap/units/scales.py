@@ -14,7 +14,7 @@ from ..model.html import as_table
 from ..model.shown import Shown
 from ..model.system import System
 from ..model.variations import Variations
-from .quantities import quantity
+from .quantities import EXAMPLES, quantity
 from .table import PI, UNITS
 
 #: What of a structure given by matrices is read as it stands: they are in SI units then.
@@ -283,7 +283,8 @@ class Scales:
         more = f" and {len(lacking) - _NAMED} more" if len(lacking) > _NAMED else ""
         are = "a reference value is" if len(missing) == 1 else "reference values are"
         raise InputError(
-            f"cannot convert {what}{more} to ratios: {are} missing; give {' and '.join(missing)}"
+            f"cannot convert {what}{more} to ratios: {are} missing; give {' and '.join(missing)}, "
+            f"such as {' and '.join(_line(key) for key in missing)}"
         )
 
     def _missing(self, kinds: set[str]) -> list[str]:
@@ -303,6 +304,12 @@ class Scales:
             "units.normal_force": self.normal is None and "coefficient" in kinds,
         }
         return [key for key, is_missing in found.items() if is_missing]
+
+
+def _line(missing: str) -> str:
+    """The line of a configuration that gives a missing reference value."""
+    key = missing.partition(" ")[0]
+    return f'{key} = "{EXAMPLES[UNIT_KINDS[key.removeprefix("units.")]]}"'
 
 
 class Reference(Protocol):

@@ -949,3 +949,103 @@ def test_python_takes_units():
     assert told["physical"] == {"frequency": {"unit": "Hz", "factor": 1.0}}
     with pytest.raises(InputError, match=r"cannot use units\.base_amplitude: it needs base excitation"):
         fm.explore(fm.System(), units=fm.Units(base_amplitude="1 mm"))
+
+
+#: One mass with a spring in its contact, and two with belts and forces of their own.
+SPRING = """\
+[system]
+damping_ratios = 0.02
+contact_stiffness = 1.0
+[grid]
+r = [0.0, 2.0]
+beta = [0.0, 1.2]
+"""
+BELTS = """\
+[system]
+mass_ratios = [1.0, 0.5]
+stiffness_ratios = [1.0, 2.0]
+damping_ratios = 0.02
+[[system.contacts]]
+kind = "fixed-wall"
+masses = [1]
+force = 0.4
+wall_speed = 0.5
+[[system.contacts]]
+kind = "fixed-wall"
+masses = [2]
+wall_velocity = 0.5
+[grid]
+r = [0.1, 2.5]
+beta = [0.0, 2.0]
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "given", "ratio"),
+    [
+        # r = f/(4.2 Hz), beta = F/(12.5 N), lengths over 12.5 N/(3 N/mm) = 25/6 mm
+        (SPRING, "r", "2.1 Hz,252 rpm", [0.5, 1.0]),
+        (SPRING, "at", "0.5,2.5 N", [0.5, 0.2]),
+        (SPRING, "beta", "2.5 N,0.0125 kN", [0.2, 1.0]),
+        (SPRING, "at", "2.1 Hz,2.5 N", [0.5, 0.2]),
+        (SPRING, "band", "2.1 Hz,4.2 Hz", [0.5, 1.0]),
+        (SPRING, "limit", "1.25 cm", 3.0),
+        (SPRING, "contact_stiffness", "6 N/mm", 2.0),
+        (SPRING, "mu", "1.5", 1.5),
+        (BELTS, "contacts[1].force", "2.5 N", 0.2),
+        (BELTS, "mass_ratios[2]", f"{1.5e3 / (2 * np.pi * 4.2) ** 2!r} kg", 0.5),
+        (BELTS, "stiffness_ratios[2]", "1.5 kN/m", 0.5),
+        (BELTS, "contacts[1].wall_speed", f"{2 * np.pi * 4.2 * 25e-3 / 12!r} m/s", 0.5),
+    ],
+)
+def test_numbers_of_a_query_have_units(tmp_path, text, key, given, ratio):
+    with served(scene_from(tmp_path, text + UNITS)) as server:
+        status, body, _ = ask(server, f"/ratios?{quote(key)}={quote(given)}")
+        assert status == 200, body
+        assert set(json.loads(body)) == {key}
+        assert json.loads(body)[key] == pytest.approx(ratio, rel=1e-15)
+    with served(scene_from(tmp_path, text)) as server:
+        status, body, _ = ask(server, f"/ratios?{quote(key)}={quote(given)}")
+        if key == "mu":
+            assert status == 200
+        else:
+            assert status == 400
+            assert body.startswith(b"cannot convert ")
+            assert b"missing; give units." in body
+            line = body.decode().partition("such as ")[2].strip()
+    if key != "mu":  # the remedy of the message works
+        units = "[units]\n" + "\n".join(one.strip().removeprefix("units.") for one in line.split(" and "))
+        with served(scene_from(tmp_path, f"{text}{units}\n")) as server:
+            assert ask(server, f"/ratios?{quote(key)}={quote(given)}")[0] == 200
+
+
+def test_a_motion_is_asked_for_in_units(tmp_path):
+    with served(scene_from(tmp_path, ONE + UNITS)) as server:
+        header, arrays = packet(server, f"/motion?at={quote('2.1 Hz,2.5 N')}&mu=1.5")
+        plain, curves = packet(server, "/motion?at=0.5,0.2&mu=1.5")
+    assert header == plain
+    assert all((arrays[name] == curves[name]).all() for name in curves)
+
+
+@pytest.mark.parametrize(
+    ("query", "words"),
+    [
+        ("at=2.1 N,2.5 N", "r must be a number with a unit of frequency (Hz, kHz, rad/s, rpm), such as "
+         "'4.2 Hz'; got '2.1 N': N is a unit of force"),
+        ("r=0.5,4.2 Hz", "got '0.5': it has no unit"),
+        ("beta=0 N,50 n", "unknown unit n (did you mean N?)"),
+        ("mu=1.5 N", "mu must be a number; got '1.5 N'"),
+        ("damping_ratios=1 Hz", "damping_ratios must be a number without a unit, of critical damping; "
+         "got '1 Hz'"),
+        ("contacts[2].wall_velocity=0.2 m/s", "without a unit, times ωP/k1; got '0.2 m/s'; for a speed that "
+         "is the same at all frequencies set wall_speed in the configuration"),
+        ("contacts[1].force=-5 N", "must be >= 0"),
+    ],
+)  # fmt: skip
+def test_wrong_units_of_a_query_are_refused_in_a_line(tmp_path, query, words):
+    key, _, value = query.partition("=")
+    with served(scene_from(tmp_path, BELTS + UNITS)) as server:
+        status, body, _ = ask(server, f"/ratios?{quote(key)}={quote(value)}")
+    assert status == 400
+    assert words in body.decode()
+    assert body.count(b"\n") == 1

@@ -224,7 +224,7 @@ def test_a_late_answer_about_compiling_changes_nothing(browser, one):
 
 def test_a_view_that_is_refused_is_not_saved(browser, one):
     with page_of(browser, one.url) as page:
-        page.fill("input[type=number][name=mu]", "0.5")
+        page.fill("input.number[name=mu]", "0.5")
         page.keyboard.press("Enter")
         page.wait_for_selector("#message.wrong")
         page.click("#save summary")
@@ -249,7 +249,7 @@ def test_a_page_as_a_file_shows_the_map_of_its_sliders(browser, tmp_path):
 
         def check(mu, ratio):
             for name in ("mu", "mass_ratios[2]"):
-                numbers[name] = float(page.input_value(f"input[type=number][name='{name}']"))
+                numbers[name] = float(page.input_value(f"input.number[name='{name}']"))
             assert (numbers["mu"], numbers["mass_ratios[2]"]) == (mu, ratio)
             system = fm.System(
                 "between-masses", [1, 2], mass_ratios=[1.0, ratio], stiffness_ratios=[1.0, 2.0]

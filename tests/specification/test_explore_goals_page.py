@@ -283,7 +283,7 @@ def test_two_designs_are_pinned_compared_and_restored(browser, chain):
         ]  # fmt: skip
         repainted(page, lambda: page.click("#pins button:text-is('show A')"))
         assert page.input_value("#goal") == "no-stop"
-        assert page.input_value("input[type=number][name=damping_ratios]") == "0.01"
+        assert page.input_value("input.number[name=damping_ratios]") == "0.01"
         assert numbers(answered(page), "β") == [pytest.approx(least, rel=1e-3)]
         found = address(page)
         assert (found["cell"], found["mu"]) == ("0.8,0.6", "1")
@@ -303,7 +303,7 @@ def test_an_invalid_goal_in_the_address_is_reported(browser, chain):
     with page_of(browser, f"{chain.url}#goal=best:1,2&mu=1.5") as page:
         assert "goal must be GOAL:FROM,TO" in page.inner_text("#notice")
         assert "got best:1,2; used: none" in page.inner_text("#notice")
-        assert page.input_value("input[type=number][name=mu]") == "1.5"
+        assert page.input_value("input.number[name=mu]") == "1.5"
 
 
 @pytest.mark.parametrize("width", [390, 900, 1280])

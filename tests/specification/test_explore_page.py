@@ -222,7 +222,7 @@ def test_many_inputs_in_a_row_end_with_the_last(browser, one):
 
 def test_ratios_of_a_chain_have_sliders(browser, tmp_path):
     with served(scene_from(tmp_path, TWO_MASSES)) as server, page_of(browser, server.url) as page:
-        page.fill("input[type=number][name='mass_ratios[2]']", "0.8")
+        page.fill("input.number[name='mass_ratios[2]']", "0.8")
         repainted(page, lambda: page.keyboard.press("Enter"))
         assert of_address(page)["mass_ratios[2]"] == "0.8"
         repainted(page, lambda: page.select_option("#contact", "fixed-wall:2"))
@@ -380,15 +380,15 @@ def test_errors_of_the_address_are_reported_in_a_line_each(browser, one):
         )
         right = {"r": "0,2", "beta": "0,0.9", "mu": "1", "quantity": "stuck_fraction"}
         assert of_address(page) == right
-        page.fill("input[type=number][name=mu]", "0.5")
+        page.fill("input.number[name=mu]", "0.5")
         page.keyboard.press("Enter")
         page.wait_for_selector("#message.wrong")
         assert page.inner_text("#message") == "mu must be >= 1; got 0.5"
-        page.fill("input[type=number][name=mu]", "")
+        page.fill("input.number[name=mu]", "")
         page.keyboard.press("Enter")
-        assert page.input_value("input[type=number][name=mu]") == "0.5"
+        assert page.input_value("input.number[name=mu]") == "0.5"
         assert page.is_hidden("#notice")  # the view is another one now
-        page.fill("input[type=number][name=mu]", "1.2")
+        page.fill("input.number[name=mu]", "1.2")
         repainted(page, lambda: page.keyboard.press("Enter"))
         assert page.is_hidden("#message")
         page.wrong = [
@@ -502,7 +502,7 @@ def test_a_page_as_a_file_needs_no_server(browser, tmp_path):
         page.keyboard.press("Escape")
         repainted(page, lambda: page.evaluate(MOVE, ["damping_ratios", 1]))
         mu, zeta = (
-            float(page.input_value(f"input[type=number][name={name}]")) for name in ("mu", "damping_ratios")
+            float(page.input_value(f"input.number[name={name}]")) for name in ("mu", "damping_ratios")
         )
         assert (mu, zeta) == (2.0, 0.125)
         np.testing.assert_array_equal(middles(), maps(mu, zeta))
@@ -543,3 +543,49 @@ def test_the_page_unpacks_the_packets_of_the_server(browser, one):
         assert regime == header["regime"]
         np.testing.assert_array_equal(np.float32(z), arrays["z"])
         np.testing.assert_array_equal(np.array(numbers, dtype=float), arrays["numbers"])
+
+
+UNITS = '[units]\nnatural_frequency = "4.2 Hz"\nload = "12.5 N"\nstiffness = "3 N/mm"\n'
+
+#: Waits until the address of the page has a text.
+CHANGED = "(text) => location.hash.includes(text)"
+
+
+def test_numbers_are_typed_with_units(browser, tmp_path):
+    text = TWO_MASSES.replace("[grid]", f"{UNITS}[grid]")
+    with served(scene_from(tmp_path, text)) as server:
+        address = "#r=2.1 Hz,8.4 Hz&beta=0 N,25 N&cell=4.2 Hz,2.5 N&stiffness_ratios[2]=1.5 Hz"
+        with page_of(browser, server.url + address) as page:
+            assert page.inner_text("#notice").startswith(
+                "stiffness_ratios[2] must be a number with a unit of stiff"
+            )
+            shown = of_address(page)
+            assert (shown["r"], shown["beta"], shown["cell"]) == ("0.5,2", "0,2", "1,0.2")
+            field, refused = (
+                f".slider:has([name='stiffness_ratios[2]']) {one}" for one in (".number", ".refused")
+            )
+            page.fill(field, "1.5 kN/m")
+            page.keyboard.press("Enter")
+            page.wait_for_function("(field) => document.querySelector(field).value === '0.5'", arg=field)
+            repainted(page, lambda: page.wait_for_function(CHANGED, arg="stiffness_ratios[2]=0.5&"))
+            page.fill(field, "1.5 kN")
+            page.keyboard.press("Enter")
+            page.wait_for_selector(refused)
+            assert page.inner_text(refused).endswith("got '1.5 kN': kN is a unit of force")
+            page.fill(field, "4.5 N/mm")
+            page.keyboard.press("Enter")
+            page.wait_for_function("(field) => document.querySelector(field).value === '1.5'", arg=field)
+            assert page.is_hidden(refused)
+            repainted(page, lambda: page.wait_for_function(CHANGED, arg="stiffness_ratios[2]=1.5&"))
+            page.wrong = [one for one in page.wrong if "400 (Bad Request)" not in one]
+
+
+def test_a_unit_without_its_reference_is_refused_next_to_the_field(browser, tmp_path):
+    with served(scene_from(tmp_path, TWO_MASSES)) as server, page_of(browser, server.url) as page:
+        page.fill(".number[name='mass_ratios[2]']", "20 kg")
+        page.keyboard.press("Enter")
+        refused = page.locator(".slider:has([name='mass_ratios[2]']) .refused")
+        refused.wait_for()
+        assert "missing; give units.natural_frequency" in refused.inner_text()
+        assert 'units.stiffness = "3 N/mm"' in refused.inner_text()
+        page.wrong = [one for one in page.wrong if "400 (Bad Request)" not in one]

@@ -89,7 +89,7 @@ map good.toml --set grid.mu=0.9
 map good.toml --set grid.r={start=0,stop=1,num=100000} --set grid.beta={start=0,stop=1,num=100000}
     grid must have at most 1e+09 cells in memory; got 1e+10 (1 mu x 100000 r x 100000 beta)
 map good.toml --set grid.r=2.1Hz
-    cannot convert grid.r = '2.1Hz' to ratios: a reference value is missing; give units.natural_frequency (or units.mass with units.stiffness)
+    cannot convert grid.r = '2.1Hz' to ratios: a reference value is missing; give units.natural_frequency (or units.mass with units.stiffness), such as units.natural_frequency = "4.2 Hz"
 map good.toml --set 'grid.r="2,1 Hz"' --set 'units.natural_frequency="4.2 Hz"'
     grid.r must be a number with a unit of frequency (Hz, kHz, rad/s, rpm), such as '4.2 Hz'; got '2,1 Hz': use a decimal point, not a comma
 map good.toml --set 'grid.r="2.1 N"' --set 'units.natural_frequency="4.2 Hz"'
@@ -465,7 +465,7 @@ design question.toml --set design.band=[0,1]
 design question.toml --set design.band=[2,1]
     design.band must be increasing; got 1.0 at index 1
 design question.toml --set 'design.band=["1 Hz","2 Hz"]'
-    cannot convert design.band = ['1 Hz', '2 Hz'] to ratios: a reference value is missing; give units.natural_frequency (or units.mass with units.stiffness)
+    cannot convert design.band = ['1 Hz', '2 Hz'] to ratios: a reference value is missing; give units.natural_frequency (or units.mass with units.stiffness), such as units.natural_frequency = "4.2 Hz"
 design question.toml --set design.mu=0.9
     design.mu must be >= 1; got 0.9
 design question.toml --set design.beta=[0.5]
@@ -701,7 +701,7 @@ fm.sweep(ONE, [1.0], [-0.5])
 fm.sweep(ONE, [1.0], [0.5], [0.5])
     mu must be >= 1; got 0.5 at index 0
 fm.sweep(ONE, ["1 Hz"], [0.5])
-    cannot convert r = ['1 Hz'] to ratios: a reference value is missing; give units.natural_frequency (or units.mass with units.stiffness)
+    cannot convert r = ['1 Hz'] to ratios: a reference value is missing; give units.natural_frequency (or units.mass with units.stiffness), such as units.natural_frequency = "4.2 Hz"
 fm.sweep(ONE, [1.0], [0.5], start="sliding")
     start must be one of rest, moving; got 'sliding'
 fm.sweep(ONE, [1.0], [0.5], step=9)

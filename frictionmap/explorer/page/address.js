@@ -1,5 +1,7 @@
 // The view in the address, so that a link restores it, and in requests to the server.
 
+import { hasUnit } from "./field.js";
+
 /**
  * What the page shows.
  * @typedef {object} View
@@ -66,6 +68,12 @@ export function queryOf(view, scene, further = {}) {
   return joined([...pairsOf(view, scene), ...Object.entries(further)]);
 }
 
+/** The query of typed numbers: units depend on the contact of the view. @param {View} view */
+export function typedQuery(view, scene, given) {
+  const contact = view.contact === scene.contacts[0].key ? {} : { contact: view.contact };
+  return joined(Object.entries({ ...contact, ...given }));
+}
+
 /** The part of an address behind #. @param {View} view */
 export function hashOf(view, scene) {
   const pairs = pairsOf(view, scene);
@@ -79,6 +87,42 @@ export function hashOf(view, scene) {
 export function changedKeys(before, after) {
   const [old, now] = [before, after].map((hash) => new URLSearchParams(hash.replace(/^#/, "")));
   return [...new Set([...old.keys(), ...now.keys()])].filter((key) => old.get(key) !== now.get(key)).sort().join();
+}
+
+/** Keys of an address whose numbers may have units, with those of a query. */
+function keysWithUnits(scene) {
+  return new Map([["r", "r"], ["beta", "beta"], ["cell", "at"], ...scene.sliders.map(({ key }) => [key, key])]);
+}
+
+/** Whether a number of an address has a unit. */
+export function addressHasUnits(hash, scene) {
+  const keys = keysWithUnits(scene);
+  return [...new URLSearchParams(hash.replace(/^#/, ""))].some(([key, text]) => keys.has(key) && text.split(",").some(hasUnit));
+}
+
+/**
+ * An address with ratios in the place of numbers with units; what the server refuses is left out.
+ * @param {(given: object) => Promise<object>} convert
+ * @returns {Promise<{hash: string, wrong: string[]}>}
+ */
+export async function addressInRatios(hash, scene, convert) {
+  const keys = keysWithUnits(scene);
+  const wrong = [];
+  const pairs = [];
+  for (const pair of hash.replace(/^#/, "").split("&")) {
+    const [[key, text] = ["", ""]] = new URLSearchParams(pair);
+    if (!keys.has(key) || !text.split(",").some(hasUnit)) {
+      pairs.push(pair);
+      continue;
+    }
+    try {
+      const name = keys.get(key);
+      pairs.push(joined([[key, (await convert({ [name]: text }))[name]]]));
+    } catch (error) {
+      wrong.push(error.message);
+    }
+  }
+  return { hash: `#${pairs.join("&")}`, wrong };
 }
 
 /** Longest invalid value that a message quotes. */

@@ -1,6 +1,7 @@
 // Menus and sliders for the quantity shown and the parameters.
 
 import { short } from "./axes.js";
+import { FIELD, REFUSED, listenToField, writeIn } from "./field.js";
 
 /** Steps of a slider from its least to its most. */
 const STEPS = 1000;
@@ -26,9 +27,10 @@ export class Controls {
    * @param {object} scene
    * @param {(change: object) => void} onChange  a part of a view, or {number: [key, value]}
    * @param {{values: Object<string, number[]>} | null} fixed  places that sliders have, if not all
+   * @param {(given: object) => Promise<object>} convert  numbers of a query, which may have units, as ratios
    */
-  constructor(form, scene, onChange, fixed) {
-    [this.form, this.scene, this.onChange, this.fixed] = [form, scene, onChange, fixed];
+  constructor(form, scene, onChange, fixed, convert) {
+    [this.form, this.scene, this.onChange, this.fixed, this.convert] = [form, scene, onChange, fixed, convert];
     form.addEventListener("submit", (event) => event.preventDefault());
     this.sliders = new Map();
     if (!fixed) this.#presets(scene.presets);
@@ -112,14 +114,15 @@ export class Controls {
     const places = this.fixed?.values[slider.key];
     const id = `slider-${slider.key}`;
     const most = places ? places.length - 1 : STEPS;
-    const made = this.#add(parent, `<label></label><input type="number" step="any"><input type="range" min="0" max="${most}">`, "control slider");
-    const [label, number, range] = made.children;
+    const made = this.#add(parent, `<label></label>${FIELD}<input type="range" min="0" max="${most}">${REFUSED}`, "control slider");
+    const [label, number, range, refused] = made.children;
     [label.textContent, label.htmlFor, range.id, number.ariaLabel] = [slider.label, id, id, `${slider.label}, as a number`];
     [range.name, number.name, number.readOnly] = [slider.key, slider.key, Boolean(places)];
     const change = (value) => this.onChange({ number: [slider.key, value] });
     range.addEventListener("input", () => change(places ? places[range.value] : valueAt(slider, range.value / STEPS)));
     range.addEventListener("dblclick", () => change(slider.value));
-    number.addEventListener("change", () => (Number.isFinite(number.valueAsNumber) ? change(number.valueAsNumber) : this.set(this.view)));
+    const convert = async (text) => (await this.convert({ [slider.key]: text }))[slider.key];
+    listenToField(number, refused, { plain: change, convert, ratio: change, reset: () => this.set(this.view) });
     this.sliders.set(slider.key, { slider, number, range, places });
   }
 
@@ -142,8 +145,8 @@ export class Controls {
     for (const [key, { slider, number, range, places }] of this.sliders) {
       const value = key === "mu" ? view.mu : view.numbers[key] ?? slider.value;
       range.value = places ? places.indexOf(value) : Math.round(STEPS * shareAt(slider, value));
-      range.ariaValueText = this.#words(slider, value);
-      if (document.activeElement !== number || !number.value) number.value = Number(value.toPrecision(8));
+      range.ariaValueText = number.title = this.#words(slider, value);
+      writeIn(number, String(Number(value.toPrecision(8))));
     }
   }
 }

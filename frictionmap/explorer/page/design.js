@@ -41,6 +41,7 @@ export class Design {
       change: (part) => this.#change(part),
       select: () => this.does.select([this.answer.peaks?.[0]?.r ?? this.answer.r ?? this.answer.band[0], this.answer.beta]),
       pin: (name) => this.#pin(name),
+      convert: (given) => this.source.ratios(this.view, this.scene, given),
     });
     this.handles = new Handles(map, (band, done) => this.#onHandle(band, done));
     this.pins = new Pins(section, this.scene, {

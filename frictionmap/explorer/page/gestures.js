@@ -14,7 +14,7 @@ const SHIFT = 0.12;
 const TYPED = "input, select, dialog, textarea";
 
 /** Elements that undo what was typed themselves. */
-const WRITTEN = "input[type=number], textarea";
+const WRITTEN = "input.number, textarea";
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 

@@ -1,6 +1,6 @@
 // The page: it shows one view, and updates everything when the view changes.
 
-import { cellsKey, changedKeys, firstView, hashOf, pictureKey, queryOf, systemKey, tidy, viewOf } from "./address.js";
+import { addressHasUnits, addressInRatios, cellsKey, changedKeys, firstView, hashOf, pictureKey, queryOf, systemKey, tidy, viewOf } from "./address.js";
 import { forgetColours, short } from "./axes.js";
 import { classTable } from "./colours.js";
 import { Controls } from "./controls.js";
@@ -88,14 +88,15 @@ function later(work, milliseconds) {
 }
 
 class Page {
-  constructor(source, scene) {
+  /** @param {{hash: string, wrong: string[]}} address  in ratios */
+  constructor(source, scene, address) {
     [this.source, this.scene] = [source, scene];
     this.design = new Design(source, scene, {
       settle: () => this.settle(), select: (cell) => this.change({ cell }), newest: (work, onError) => new LatestOnly(work, onError),
     });
     this.quantities = scene.quantities;
     this.step = this.last = history.state?.step ?? 0;
-    this.#readAddress();
+    this.#readAddress(address);
     this.table = classTable(scene.classes);
     this.map = new RegimeMap(part("stage"), scene);
     this.hint = part("motion").innerText;
@@ -108,7 +109,7 @@ class Page {
       pick: (value) => this.change({ cell: this.#onCut(value).map((one) => Number(one.toPrecision(4))) }),
     });
     this.refiner = new Refiner(source, (found) => this.#onPicture(found), (state) => this.#onState(state));
-    this.controls = new Controls(part("controls"), scene, (change) => this.#onControl(change), source.fixed);
+    this.controls = new Controls(part("controls"), scene, (change) => this.#onControl(change), source.fixed, (given) => source.ratios(this.view, scene, given));
     this.motions = new LatestOnly((...args) => this.#fetchMotion(...args), (error) => this.#wrong(error), GRACE);
     this.examples = new LatestOnly((signal) => this.#fetchExample(signal), () => {});
     this.others = new LatestOnly((...args) => this.#fetchOthers(...args), () => {});
@@ -320,25 +321,35 @@ class Page {
     if (!quantities.some(({ key }) => key === this.view.quantity)) this.change({ quantity: quantities[0].key });
   }
 
-  #onAddress() {
+  async #onAddress() {
     if (location.hash === this.hash) return;
-    this.hash = location.hash;
-    this.#readAddress();
+    const hash = (this.hash = location.hash);
+    if (!addressHasUnits(hash, this.scene)) {
+      this.#takeAddress({ hash, wrong: [] });
+      return;
+    }
+    this.read = true;
+    const address = await inRatios(hash, this.source, this.scene);
+    if (hash === this.hash) this.#takeAddress(address);
+  }
+
+  #takeAddress(address) {
+    this.#readAddress(address);
     this.controls.offer("quantity", this.quantities, this.view);
     this.update(true);
   }
 
   /** Read the view from the address; messages about errors in it are shown until the view changes. */
-  #readAddress() {
+  #readAddress({ hash, wrong: refused }) {
     const { scene } = this;
     this.read = true;
-    const chosen = (this.source.live && new URLSearchParams(location.hash.slice(1)).get("contact")) || scene.contacts[0].key;
+    const chosen = (this.source.live && new URLSearchParams(hash.slice(1)).get("contact")) || scene.contacts[0].key;
     this.quantities = scene.contacts.find(({ key }) => key === chosen)?.quantities ?? this.quantities;
     const known = { ...scene, quantities: this.quantities };
-    const { view: wanted, wrong } = viewOf(this.design.read(location.hash), known, this.source.fixed?.values);
+    const { view: wanted, wrong } = viewOf(this.design.read(hash), known, this.source.fixed?.values);
     const { view, note } = this.#inFile(wanted);
     this.view = view;
-    this.#note([...wrong, ...this.design.wrong, note].filter(Boolean).join("\n"));
+    this.#note([...refused, ...wrong, ...this.design.wrong, note].filter(Boolean).join("\n"));
   }
 
   #redraw() {
@@ -708,12 +719,18 @@ class Page {
   }
 }
 
+/** The address in ratios; a page that is a file takes ratios only. */
+async function inRatios(hash, source, scene) {
+  if (!source.live || !addressHasUnits(hash, scene)) return { hash, wrong: [] };
+  return addressInRatios(hash, scene, (given) => source.ratios(firstView(scene), scene, given));
+}
+
 async function begin() {
   const stored = part("stored");
   const source = stored ? await Stored.open(stored.textContent) : new Server();
   try {
     const scene = await source.scene();
-    new Page(source, scene).begin();
+    new Page(source, scene, await inRatios(location.hash, source, scene)).begin();
   } catch (error) {
     [part("message").textContent, part("message").hidden] = [error.message, false];
     part("message").classList.add("wrong");

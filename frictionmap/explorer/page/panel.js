@@ -2,6 +2,7 @@
 
 import { GOALS, hasLimit, isOfResponse, sentencesOf } from "./goal.js";
 import { paragraph } from "./dom.js";
+import { REFUSED, listenToField, writeIn } from "./field.js";
 
 const TEMPLATE = `
   <summary>goal of a design</summary>
@@ -9,10 +10,10 @@ const TEMPLATE = `
     <div class="control"><label for="goal">friction for</label><select id="goal"><option value="">no goal</option></select></div>
     <div class="control of"><label for="goal-of">response of</label><select id="goal-of"></select></div>
     <div class="control limit"><label for="goal-limit">largest value</label>
-      <div class="field"><input type="number" id="goal-limit" step="any" min="0"><span class="unit"></span></div></div>
+      <div class="field"><input type="text" class="number" id="goal-limit" autocomplete="off"><span class="unit"></span></div>${REFUSED}</div>
     <div class="control band" role="group" aria-labelledby="goal-band"><span id="goal-band"></span>
-      <div class="field"><input type="number" step="any" min="0" name="goal-from" aria-label="band from">
-        <span>to</span><input type="number" step="any" min="0" name="goal-to" aria-label="band to"></div></div>
+      <div class="field"><input type="text" class="number" name="goal-from" aria-label="band from" autocomplete="off">
+        <span>to</span><input type="text" class="number" name="goal-to" aria-label="band to" autocomplete="off"></div>${REFUSED}</div>
     <div class="answer" role="status" aria-live="polite"></div>
     <button type="button" class="peak" title="the motion at the frequency that decides">select its cell</button>
     <div class="control"><span id="pin-name">pin this design</span><div class="row" role="group" aria-labelledby="pin-name">
@@ -27,7 +28,7 @@ function digits(value) {
 export class GoalPanel {
   /**
    * @param {HTMLElement} form    that it is appended to
-   * @param {object} does         callbacks: change(part of a goal), select(), pin(name)
+   * @param {object} does         callbacks: change(part of a goal), select(), pin(name), convert(keys of a query) a promise of ratios
    */
   constructor(form, does) {
     this.does = does;
@@ -37,9 +38,9 @@ export class GoalPanel {
     for (const { key, label } of Object.values(GOALS)) this.#part("#goal").add(new Option(label, key));
     this.#part("#goal").addEventListener("change", ({ target }) => does.change({ ask: target.value }));
     this.#part("#goal-of").addEventListener("change", ({ target }) => does.change({ of: target.value }));
-    this.#part("#goal-limit").addEventListener("change", ({ target }) => this.#onLimit(target.valueAsNumber));
+    this.#listenToLimit();
     this.ends = ["from", "to"].map((name) => this.#part(`[name=goal-${name}]`));
-    for (const field of this.ends) field.addEventListener("change", () => this.#onBand());
+    this.ends.forEach((field, k) => this.#listenToEnd(field, k));
     this.#part(".peak").addEventListener("click", () => does.select());
     for (const button of this.root.querySelectorAll("[data-pin]")) button.addEventListener("click", () => does.pin(button.dataset.pin));
   }
@@ -48,15 +49,25 @@ export class GoalPanel {
     return this.root.querySelector(name);
   }
 
-  #onLimit(value) {
-    this.does.change({ limit: value > 0 ? value / (this.physical.length?.factor ?? 1) : null });
+  #listenToLimit() {
+    const change = (limit) => this.does.change({ limit: limit > 0 ? limit : null });
+    listenToField(this.#part("#goal-limit"), this.#part(".limit .refused"), {
+      plain: (value) => change(value / (this.physical.length?.factor ?? 1)),
+      convert: async (text) => (await this.does.convert({ limit: text })).limit,
+      ratio: change,
+      reset: () => change(0),
+    });
   }
 
-  #onBand() {
-    const factor = this.physical.frequency?.factor ?? 1;
-    const band = this.ends.map((field, k) => (field.value === digits(this.goal.band[k] * factor) ? this.goal.band[k] : field.valueAsNumber / factor));
-    if (band.every(Number.isFinite)) this.does.change({ band });
-    else this.set(this.goal);
+  /** Listen to one end of the band; the other one keeps its ratio, of which the field shows fewer digits. */
+  #listenToEnd(field, k) {
+    const change = (end) => this.does.change({ band: this.goal.band.map((old, at) => (at === k ? end : old)) });
+    listenToField(field, this.#part(".band .refused"), {
+      plain: (value) => change(value / (this.physical.frequency?.factor ?? 1)),
+      convert: async (text) => (await this.does.convert({ band: text })).band[0],
+      ratio: change,
+      reset: () => this.set(this.goal),
+    });
   }
 
   /** Show units and subjects as the cells have them. @param {object} about  description of the cells */
@@ -83,11 +94,8 @@ export class GoalPanel {
     this.#part(".of").hidden = !isOfResponse(goal);
     this.#part(".limit").hidden = !hasLimit(goal);
     this.#part(".band").hidden = !goal.ask;
-    const write = (field, value) => {
-      if (document.activeElement !== field || !field.value) field.value = value;
-    };
-    this.ends.forEach((field, k) => write(field, digits(goal.band[k] * (frequency?.factor ?? 1))));
-    write(this.#part("#goal-limit"), goal.limit === null ? "" : digits(goal.limit * (length?.factor ?? 1)));
+    this.ends.forEach((field, k) => writeIn(field, digits(goal.band[k] * (frequency?.factor ?? 1))));
+    writeIn(this.#part("#goal-limit"), goal.limit === null ? "" : digits(goal.limit * (length?.factor ?? 1)));
     const ratio = length && goal.limit !== null ? ` = ${digits(goal.limit)} ${this.units.length}` : "";
     this.#part(".unit").textContent = `${length?.unit ?? this.units.length}${ratio}`;
   }

@@ -1,6 +1,6 @@
 // Where maps and motions come from: the server on this machine.
 
-import { queryOf } from "./address.js";
+import { queryOf, typedQuery } from "./address.js";
 import { unpack } from "./packet.js";
 
 /** A refusal by the server, in one line. */
@@ -44,6 +44,11 @@ export class Server {
   /** State of compilation. */
   async state() {
     return (await this.#get("state", "")).json();
+  }
+
+  /** Numbers as ratios: they may have units. @param {object} given  keys of a query */
+  async ratios(view, scene, given) {
+    return (await this.#get("ratios", typedQuery(view, scene, given))).json();
   }
 
   async #packet(path, view, scene, further, signal) {

@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from .files.config import load_config
     from .files.opening import open  # fm.open, as in other packages of files
     from .model.contact import Contact
+    from .model.friction_law import FrictionLaw
     from .model.periodic_load import PeriodicLoad
     from .model.settings import Solver
     from .model.system import System
@@ -94,6 +95,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Contact",
+    "FrictionLaw",
     "InputError",
     "NoSteadyState",
     "PeriodicLoad",
@@ -138,6 +140,7 @@ __all__ = [
 # `frictionmap --help` needs none of them.
 _HOME = {
     "Contact": "model.contact",
+    "FrictionLaw": "model.friction_law",
     "PeriodicLoad": "model.periodic_load",
     "Record": "motions.record",
     "Solver": "model.settings",

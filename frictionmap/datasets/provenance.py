@@ -189,6 +189,8 @@ def _contact_keys(contact: "Contact", dofs: "Dofs") -> dict[str, object]:
     own = {key: list(value) if isinstance(value, tuple) else value for key, value in own.items()}
     normal = [{"n": n, "re": value.real, "im": value.imag} for n, value in contact.nu.items()]
     found = {"kind": contact.kind, "masses": masses, **own, "normal_load": normal or None}
+    if contact.law is not None:
+        found["law"] = contact.law.as_keys()
     return {
         key: value
         for key, value in found.items()

@@ -266,6 +266,8 @@ def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, Any]
         given = table.get(key)
         if isinstance(given, str) and given and given not in WAVEFORMS:
             table[key] = folder / given
+    if isinstance(table.get("contacts"), list):
+        table["contacts"] = [_contact(one, folder) for one in table["contacts"]]
     matrices = table.get("matrices", {})
     if isinstance(matrices, str) and matrices:
         table["matrices"] = folder / matrices
@@ -279,6 +281,12 @@ def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, Any]
             f"got {matrices!r}"
         )
     return table
+
+
+def _contact(given: Any, folder: Path) -> Any:
+    """An entry of contacts, with `law_file` as seen from the folder of the configuration."""
+    path = given.get("law_file") if isinstance(given, Mapping) else None
+    return {**given, "law_file": folder / path} if isinstance(path, str) and path else given
 
 
 def _matrix_files(table: Mapping[str, Any]) -> list[Path]:

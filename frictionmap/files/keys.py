@@ -10,6 +10,7 @@ from typing import Any, get_args
 from .. import checks
 from ..datasets.questions import records
 from ..model.contact import CONTACTS, MOST_CONTACTS
+from ..model.friction_law import MOST_POINTS, SHAPES
 from ..model.general import BASE_CONTROLS
 from ..model.periodic_load import MOST_HARMONICS
 from ..model.settings import (
@@ -101,6 +102,27 @@ _NORMAL = several(
         ("n",),
     )
 )  # fmt: skip
+_LAW_SPEED = _or_unit(number(least=0.0), "contacts[].law.speed")
+_LAW = either(
+    table(
+        {
+            "speed": several(_LAW_SPEED, maxItems=MOST_POINTS),
+            "factor": several(number(least=0.0), maxItems=MOST_POINTS),
+            "slope": number(least=0.0),
+        },
+        ("speed", "factor"),
+    ),
+    table(
+        {
+            "formula": word(*SHAPES),
+            "kinetic": number(least=0.0),
+            "speed": _LAW_SPEED,
+            "viscous": number(least=0.0),
+            "error": number(above=0.0),
+        },
+        ("formula", "kinetic", "speed"),
+    ),
+)
 _HARMONIC = {
     **{name: _or_unit(number(), f"load_harmonics[].{name}") for name in ("amplitude", "re", "im")},
     "n": whole(least=1, most=MOST_HARMONICS),
@@ -213,13 +235,15 @@ GENERAL_KEYS = (
                     "wall_velocity": _or_unit(number(), "contacts[].wall_velocity"),
                     "wall_speed": _or_unit(number(), "contacts[].wall_speed"),
                     "normal_load": _NORMAL,
+                    "law": _LAW,
+                    "law_file": _NAME,
                 },
             ),
             maxItems=MOST_CONTACTS,
         ),
         example='[{ kind = "fixed-wall", masses = [1] }, { kind = "between-masses", masses = [1, 2] }]',
         words="a list of { kind, masses, ratio or force, mu, name, stiffness, wall_velocity or wall_speed, "
-        "normal_load }; "
+        "normal_load, law or law_file }; "
         "lists of stiffness and ratio or force make a bank of elements",
     ),
 )

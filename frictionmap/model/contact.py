@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
+from .friction_law import friction_law, law_table
 from .periodic_load import scalar_harmonics
 from .shown import Shown
 
@@ -52,6 +53,12 @@ class Contact(Shown):
         {n: phasor}, or a list of { n, amplitude, phase_deg }.
     normal_record : Record, optional
         For `history` only: friction beta nu(t), nu = 1 + its value >= 0.
+    law : FrictionLaw or mapping, optional
+        Friction over the sliding speed: { speed, factor, slope }, or { formula, kinetic, speed, viscous,
+        error } with the formula "exponential", "gauss", "hyperbolic" or "lorentz"; speeds over
+        omega_1 P/k_1.  Default: the same at all speeds.
+    law_file : path, optional
+        Instead: a CSV file with the columns speed, factor.
 
     Raises
     ------
@@ -70,6 +77,8 @@ class Contact(Shown):
     normal_load: Any = None
     wall_speed: float = 0.0
     normal_record: Any = None
+    law: Any = None
+    law_file: Any = None
     nu: Mapping[int, complex] = field(init=False, repr=False, compare=False, default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -108,6 +117,8 @@ class Contact(Shown):
                 f"must be 1 for a contact with stiffness: its spring would jump at break-away; "
                 f"got {self.mu:g}",
             )
+        if self.law is not None or self.law_file is not None:
+            self._check_law()
         if self.normal_record is not None:
             self._check_normal_record()
         if self.normal_load is not None:
@@ -133,6 +144,21 @@ class Contact(Shown):
                 raise InputError(
                     name, f"must have as many values as stiffness ({len(self.stiffness)}); got {len(given)}"
                 )
+
+    def _check_law(self) -> None:
+        """Read the law, and refuse it where it is another model; a flat law is none."""
+        if self.law is not None and self.law_file is not None:
+            raise InputError("cannot use", "law_file", "with law: both define the friction; omit one")
+        law = friction_law(self.law) if self.law_file is None else law_table(self.law_file)
+        self._set("law", None if law.is_flat else law)
+        self._set("law_file", None)
+        for name, why in (
+            ("stiffness", "friction that falls with the speed of a slider behind a spring has no motion"),
+            ("normal_load", "friction over speed needs a constant normal load"),
+            ("normal_record", "friction over speed needs a constant normal load"),
+        ):
+            if self.law is not None and getattr(self, name) is not None:
+                raise InputError("cannot use", "law", f"with {name}: {why}; omit one")
 
     def _check_normal_record(self) -> None:
         if type(self.normal_record).__name__ != "Record":

@@ -206,6 +206,11 @@ class ContactSystem:
         """Whether each contact has a spring, (N,) bool."""
         return np.array([group.stiffness is not None for group in self.groups])
 
+    @property
+    def has_law(self) -> bool:
+        """Whether the friction of a contact depends on its speed."""
+        return any(group.first.law is not None for group in self.groups)
+
     def has_equal_friction(self, mu: float) -> bool:
         """Whether static and kinetic friction of every contact are equal at this mu of the grid."""
         return all(one.static_ratio(mu) == 1.0 for group in self.groups for one in group.members)
@@ -264,6 +269,15 @@ def refuse_general(system: Definition, what: str) -> None:
             f"cannot {what} of a system with {used[0]}: this is offered for one rigid contact under one "
             f"harmonic load; omit {used[0]}"
         )
+
+
+def refuse_law(system: Definition, what: str) -> None:
+    """Refuse friction over speed; `what`: words after "cannot", such as "compute motions under records"."""
+    for k, one in enumerate(system.contacts or (), 1):
+        if one.law is not None:
+            raise InputError(
+                f"cannot {what} with contacts[{k}].law: friction over speed is not offered there; omit law"
+            )
 
 
 def contacts_of(system: Definition) -> tuple[Contact, ...]:
@@ -352,11 +366,11 @@ def _groups(system: Definition) -> tuple[MergedContact, ...]:
                 continue
             walls = any(getattr(contact, name) != getattr(other.first, name) for name in WALLS)
             same_load = contact.nu == other.first.nu and contact.normal_record is other.first.normal_record
-            if walls or not same_load:
+            if walls or not same_load or contact.law != other.first.law:
                 raise InputError(
                     name,
-                    f"must have the wall_velocity and the normal_load of {other.name}, with which it "
-                    f"is parallel; got another one",
+                    f"must have the wall_velocity, the normal_load and the law of {other.name}, with which "
+                    f"it is parallel; got another one",
                 )
             found[i] = MergedContact((*other.members, contact), vector, base)
             break
@@ -552,6 +566,8 @@ def _describe_group(group: MergedContact, dofs: Dofs) -> str:
         more.append(f"wall speed {one.wall_speed:g}")
     if one.nu:
         more.append("varying normal load")
+    if one.law is not None:
+        more.append(f"friction over speed, {len(one.law.speed)} segments")
     if len(group.members) > 1:
         more.append(f"{len(group.members)} parallel contacts as one")
     return f"{words} ({', '.join(more)})" if more else words

@@ -118,7 +118,7 @@ def waveform(name: str, harmonics: int) -> PeriodicLoad:
     return PeriodicLoad(found, 0.0, math.sqrt(max(rest, 0.0)))
 
 
-def _rows(path: Path, columns: Sequence[str], name: str) -> list[dict[str, float]]:
+def number_rows(path: Path, columns: Sequence[str], name: str) -> list[dict[str, float]]:
     """Read a CSV file with a header of these columns."""
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
@@ -146,12 +146,12 @@ def _rows(path: Path, columns: Sequence[str], name: str) -> list[dict[str, float
 
 def load_table(path: str | os.PathLike) -> list[dict[str, float]]:
     """Read a table of harmonics: n, mass, amplitude, phase_deg."""
-    return _rows(Path(path), _ENTRY, "load_file")
+    return number_rows(Path(path), _ENTRY, "load_file")
 
 
 def sampled(path: str | os.PathLike, harmonics: int) -> PeriodicLoad:
     """Read a CSV file of one period: time, force."""
-    rows = _rows(Path(path), ("time", "force"), "waveform")
+    rows = number_rows(Path(path), ("time", "force"), "waveform")
     t, force = (np.array([row[key] for row in rows]) for key in ("time", "force"))
     return PeriodicLoad.from_samples(t, force, harmonics)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from .._kernels.general.problem import Problem
 from ..general.problem import ModalSystem, fastest, modal_system, refuse_loop, springs, ties
-from ..model.general import in_general_form
+from ..model.general import in_general_form, refuse_law
 from ..model.system import System
 from .channels import Drive
 
@@ -29,6 +29,7 @@ class Watched(NamedTuple):
 
 def structure_of(system: System) -> Structure:
     """Modes of a system in the form that the general engine takes."""
+    refuse_law(system, "compute motions under records")
     system = in_general_form(system)
     general = system.contact_system
     refuse_loop(general)

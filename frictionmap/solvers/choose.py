@@ -1,6 +1,7 @@
 """The engine of a system."""
 
 from ..errors import InputError
+from ..model.general import refuse_law
 from ..model.system import System
 from .interface import Engine
 
@@ -25,6 +26,7 @@ def engine_of(system: System) -> Engine:
             "normal_record",
             "under a periodic load: it is for motions in time; use history, or give normal_load",
         )
+    refuse_law(system, "compute steady states")
     if has_closed_forms(system):
         from .single import SingleEngine
 

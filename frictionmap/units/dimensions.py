@@ -44,6 +44,7 @@ DIMENSIONS = {
     "contacts[].stiffness": "stiffness",
     "contacts[].wall_velocity": "velocity",
     "contacts[].wall_speed": "velocity",
+    "contacts[].law.speed": "velocity",
 }
 
 #: Keys of [design] with a dimension; the limit of a transmitted force is a force.

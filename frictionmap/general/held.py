@@ -88,7 +88,8 @@ def held_forces_of(
         x = found[:, :n]
         force = np.empty((r.size, which.size), dtype=complex)
         force[:, ~elastic] = found[:, n:]
-        force[:, elastic] = kt[elastic] * (x @ vectors[elastic].T - u * moved[elastic])
+        with np.errstate(invalid="ignore"):  # an infinite x
+            force[:, elastic] = kt[elastic] * (x @ vectors[elastic].T - u * moved[elastic])
         forces[order], motions[order] = force, x
     return forces, motions
 

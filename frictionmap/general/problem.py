@@ -205,12 +205,15 @@ def problem_of(system: System, r: np.ndarray) -> tuple[Problem, ModalSystem]:
     sizes = (load[:, :, 0] / (modal.squares + (r * r)[:, np.newaxis])).max(axis=1)
     belt = np.array([group.first.wall_velocity for group in general.groups])
     moved = np.array([float(group.base) for group in general.groups])
+    tied = ties(general.vectors, moved, belt, spring)
+    # a slider under a varying normal load slips between ends at rest, too: it is watched there
+    tied[[bool(group.first.nu) for group in general.groups]] = False
     problem = Problem(
         modal.squares, modal.damping, bool((modal.damping != np.diag(np.diag(modal.damping))).any()),
         np.ascontiguousarray(modal.chi), np.ascontiguousarray(push),
         np.ascontiguousarray(np.array([channel.base for channel in channels]).T),
         np.ascontiguousarray(np.array([channel.normal for channel in channels]).T),
-        spring, belt, ties(general.vectors, moved, belt, spring), np.array(orders, dtype=float), r, phasors,
+        spring, belt, tied, np.array(orders, dtype=float), r, phasors,
         rates, np.where(sizes > 0.0, sizes, 1.0), is_symmetric(general),
     )  # fmt: skip
     return problem, modal

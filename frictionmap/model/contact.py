@@ -164,22 +164,16 @@ class Contact(Shown):
         if type(self.normal_record).__name__ != "Record":
             got = checks.one_line(self.normal_record)
             raise InputError("normal_record", f"must be a frictionmap.Record; got {got}")
-        for name in ("stiffness", "normal_load"):
-            if getattr(self, name) is not None:
-                why = (
-                    "elastic contacts have a constant normal load"
-                    if name == "stiffness"
-                    else "both define it"
-                )
-                raise InputError("cannot use", "normal_record", f"with {name}: {why}; omit one")
-
-    def _check_normal_load(self) -> None:
-        if self.nu and self.stiffness is not None:
+        if self.normal_load is not None:
+            raise InputError("cannot use", "normal_record", "with normal_load: both define it; omit one")
+        if self.stiffness is not None:
             raise InputError(
                 "cannot use",
-                "normal_load",
-                "with stiffness: elastic contacts have a constant normal load; omit one",
+                "normal_record",
+                "with stiffness: under records elastic contacts have a constant normal load; omit one",
             )
+
+    def _check_normal_load(self) -> None:
         least = least_value(self.nu)
         if least < -1.0:
             raise InputError(

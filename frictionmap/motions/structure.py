@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._kernels.general.problem import Problem
+from ..errors import InputError
 from ..general.problem import ModalSystem, fastest, modal_system, refuse_loop, springs, ties
 from ..model.general import in_general_form, refuse_law
 from ..model.system import System
@@ -33,6 +34,12 @@ def structure_of(system: System) -> Structure:
     system = in_general_form(system)
     general = system.contact_system
     refuse_loop(general)
+    if any(group.first.nu for group in general.groups):
+        raise InputError(
+            "cannot use",
+            "normal_load",
+            "in a motion in time, whose load has no period; give the contact a normal_record",
+        )
     modal = modal_system(system)
     spring = springs(general)
     return Structure(system, modal, spring, fastest(modal, spring))

@@ -264,7 +264,6 @@ REFUSED = [
     ({"contact_stiffness": [1.0, 0.0]}, "contact_stiffness[1] must be > 0; got 0"),
     ({"contact_stiffness": []}, "contact_stiffness must have at least one value; got none"),
     ({"contact_stiffness": [1.0] * 9}, "contact_stiffness must have at most 8 elements in all; got 9"),
-    ({"contact_stiffness": [1.0, 2.0], "normal_load": {2: 0.1}}, "cannot use normal_load with stiffness"),
     ({"contacts": [{**WALL, "ratio": [1, 2]}]}, "contacts[1].ratio must be one number unless stiffness is"),
     (
         {"contacts": [{**WALL, "stiffness": [1, 2], "ratio": [1]}]},
@@ -279,7 +278,6 @@ REFUSED = [
         {"contacts": [{**WALL, "stiffness": [1.0] * 5}, {**WALL, "stiffness": [2.0] * 4}]},
         "contacts must have at most 8 elements in all; got 9",
     ),
-    ({"contact_stiffness": 1.0, "normal_load": {2: 0.1}}, "cannot use normal_load with stiffness"),
     ({"normal_load": {1: 1.5}}, "normal_load must leave 1 + normal_load(tau) >= 0"),
     ({"wall_velocity": 0.1, "contact": "joined-base-wall"}, "wall_velocity must be 0 for joined-base-wall"),
     ({"load_harmonics": []}, "load_harmonics must have a harmonic that is not zero; got none"),

@@ -15,6 +15,7 @@ from .problem import F, Q, is_carried, is_rigid
 from .record import FORCES, HIGH, LOW, NOTHING, clear_record
 from .recurrence import go_back
 from .return_map import copy_motion, go_round, take_end
+from .row import normal_at_section
 
 #: Friction of a contact that is held.
 WITHOUT_LIMIT = 1e200
@@ -63,12 +64,12 @@ def _creeps(problem, memory, share, whole, j):
 
 
 @kernel
-def _hold(problem, friction, share, memory, kept):
+def _hold(problem, row, friction, share, memory, kept):
     """Hold the contacts that creep, see `_creeps`; return how many more are held than before.
 
     Parameters
     ----------
-    problem, friction : Problem, Friction
+    problem, row, friction : Problem, Row, Friction
     share : see `_creeps`
     memory : Return; its pattern and the forces of springs are changed
     kept : see `_keep`
@@ -86,7 +87,8 @@ def _hold(problem, friction, share, memory, kept):
             if kept[_MARK, j] == _LET_GO:
                 kept[_MARK, j] = _RESTS
             if memory.senses[j] != 0 and has_force(problem, j):
-                memory.start[F, j] = memory.senses[j] * kept[_KINETIC, j]
+                limit = kept[_KINETIC, j] * normal_at_section(problem, row, j)
+                memory.start[F, j] = memory.senses[j] * limit
             memory.senses[j] = 0
             count += 1
     return count
@@ -194,7 +196,7 @@ def _settle(problem, friction, halves, tolerance, workspace):
             status, more = _newton_later(problem, friction, halves, tolerance, workspace)
         cycles += more
         if status == DRIFTS:
-            more_held = _hold(problem, friction, 0.0, memory, ring.friction)
+            more_held = _hold(problem, row, friction, 0.0, memory, ring.friction)
             if more_held == 0:
                 break
             held += more_held
@@ -247,7 +249,7 @@ def find_held(problem, friction, halves, tolerance, workspace):
         code = go_round(problem, row, friction, 2, motion, memory, record, False)
         cycles += 1.0
         _keep(friction, ring.friction)
-        if code == FOLLOWED and _hold(problem, friction, share, memory, ring.friction) > 0:
+        if code == FOLLOWED and _hold(problem, row, friction, share, memory, ring.friction) > 0:
             status, more = _settle(problem, friction, halves, tolerance, workspace)
             cycles += more
             if status == REPEATS:

@@ -44,14 +44,14 @@ def _first_event(problem, friction, motion, end):
 
 
 @kernel
-def _arrives_instead(problem, motion, x, contact):
+def _arrives_instead(problem, friction, motion, x, contact):
     """A rigid contact that comes to rest where the slip of an elastic one ends, or that one.
 
     Both have one velocity where they are side by side; what the rigid one does decides what follows.
     """
     for j in range(motion.sense.size):
         slides = has_constraint(problem, j) and motion.sense[j] != 0
-        if slides and comes_to_rest(problem, motion, x, j):
+        if slides and comes_to_rest(problem, friction, motion, x, j):
             return j
     return contact
 
@@ -123,7 +123,7 @@ def pass_event(problem, row, friction, tau, motion, box, counts, event, derive):
     """
     x, contact, side = event
     if side == 0 and not has_constraint(problem, contact):
-        contact = _arrives_instead(problem, motion, x, contact)
+        contact = _arrives_instead(problem, friction, motion, x, contact)
     contacts = problem.spring.size
     series, scratch = motion.series, motion.scratch
     before, forces = scratch[_SENSE], scratch[_CHANGE]

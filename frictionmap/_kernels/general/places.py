@@ -474,7 +474,7 @@ def keep_orbit_anew(problem, friction, halves, tolerance, bits, workspace):
     _move_to_zero(problem, row, motion, memory, places)
     keep_friction(friction, places.limits)
     _lift_limits(friction, places)
-    round_state(problem, friction, memory, bits)
+    round_state(problem, row, friction, memory, bits)
     status, cycles = NO_REPEAT, 0.0
     if stop_contacts(problem, row, motion, memory):
         status, cycles = newton(problem, row, friction, halves, tolerance, motion, memory, record)

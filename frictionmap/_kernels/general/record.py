@@ -232,6 +232,23 @@ def join_slips(record, halves):
 
 
 @kernel
+def _taken_by_spring(problem, series, force, end, j):
+    """Part of the displacement in a sliding contact that its spring takes as the friction changes; the rest
+    is the way of the slider.
+    """
+    if not has_force(problem, j) or not varies(problem, j):
+        return 0.0
+    return (value_at(series, force, end) - series[force, 0]) / problem.spring[j]
+
+
+@kernel
+def _kept_in_spring(problem, series, force, end, j):
+    """Part of the work in a sliding contact that its spring keeps."""
+    mean = 0.5 * (value_at(series, force, end) + series[force, 0])
+    return mean * _taken_by_spring(problem, series, force, end, j)
+
+
+@kernel
 def keep_works(problem, row, motion, end, record, first):
     """Add the sliding distances and works of the present step."""
     contacts = problem.spring.size
@@ -241,10 +258,12 @@ def keep_works(problem, row, motion, end, record, first):
         force = first + 2 * contacts + j
         if motion.sense[j] != 0:
             way = value_at(series, first + j, end) - series[first + j, 0] - belt * end
+            way -= _taken_by_spring(problem, series, force, end, j)
             record.distance[j] += abs(way)
             record.slips[_PRESENT, j] += abs(way)
             if varies(problem, j):
                 record.works[OF_FRICTION, j] += _integral_of_product(series, force, first + contacts + j, end)
+                record.works[OF_FRICTION, j] -= _kept_in_spring(problem, series, force, end, j)
             else:
                 record.works[OF_FRICTION, j] += series[force, 0] * way
         elif has_force(problem, j):

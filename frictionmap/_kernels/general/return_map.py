@@ -12,6 +12,7 @@ from .laws.kinds import has_force, holding_stiffness, keeps_force, state_size
 from .pattern import BOX_ROWS, begin
 from .problem import SIZE, F, H, P, Q, is_rigid, moves_alone, padded
 from .record import NOTHING
+from .row import normal_at_section
 from .series import factor_held, solve_held
 from .tangent import identity
 
@@ -207,7 +208,7 @@ def rounded(value, step):
 
 
 @kernel
-def round_state(problem, friction, memory, bits):
+def round_state(problem, row, friction, memory, bits):
     """Round the coordinates of the state in `memory.start` to `bits`; forces of contacts that slip are given.
 
     What is zero up to rounding errors becomes zero: displacements and velocities have one size, and forces
@@ -226,7 +227,8 @@ def round_state(problem, friction, memory, bits):
     for j in range(memory.senses.size):
         if memory.senses[j] == 0 and has_force(problem, j):
             force = rounded(memory.start[F, j], raster(holding_stiffness(problem, j) * size, bits))
-            memory.start[F, j] = min(max(force, -friction.kinetic[j]), friction.kinetic[j])
+            limit = friction.kinetic[j] * normal_at_section(problem, row, j)
+            memory.start[F, j] = min(max(force, -limit), limit)
 
 
 @kernel

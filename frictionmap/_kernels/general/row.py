@@ -197,6 +197,17 @@ def set_row(problem, i, row):
 
 
 @kernel
+def normal_at_section(problem, row, j):
+    """Normal load nu of a contact at the section."""
+    nu = 1.0
+    for n in range(problem.orders.size):
+        c, s = math.cos(problem.orders[n] * SECTION), math.sin(problem.orders[n] * SECTION)
+        for d in range(problem.normal.shape[1]):
+            nu += problem.normal[j, d] * (row.phasors[0, d, n] * c + row.phasors[1, d, n] * s)
+    return nu
+
+
+@kernel
 def set_channels(problem, row, tau, interval, motion):
     """Put the series of the channels, which begin at the phase tau, after those of the modes in the motion.
 

@@ -331,7 +331,7 @@ def _find_anew(problem, friction, halves, tolerance, workspace):
     spent = 0.0
     for bits in BITS:
         take_orbit(memory, ring)
-        round_state(problem, friction, memory, bits)
+        round_state(problem, row, friction, memory, bits)
         if stop_contacts(problem, row, motion, memory):
             status, cycles = newton(
                 problem, row, friction, halves, tolerance, motion, memory, workspace.record
@@ -437,7 +437,7 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
             found = _settle(problem, friction, state, found, cycles, tolerance, workspace)
         elif unique:
             if by_tables:
-                round_state(problem, friction, memory, BITS[0])
+                round_state(problem, row, friction, memory, BITS[0])
                 solved, spent, multiplier = solve_single(
                     problem, row, workspace.single, friction.kinetic[0], memory, record
                 )

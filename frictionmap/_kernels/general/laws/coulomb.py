@@ -1,9 +1,10 @@
 """Coulomb friction: a slide lasts to the zero of its velocity, a stop to a side of the range of forces."""
 
 from ...compiler import inner_kernel, kernel
-from ...compiler.vectors import LANES, load, store
+from ...compiler.vectors import LANES, filled, load, store
 from ..crossings import NONE, first_zero, slope_at, value_at
-from ..problem import TERMS, WATCHED, WIDTH, force_row, normal_row, velocity_row
+from ..problem import NEXT, TERMS, WATCHED, WIDTH, force_row, normal_row, varies, velocity_row
+from .kinds import has_force
 
 #: A velocity within this share of its size, on its way to zero, is zero together with one that is: in
 #: symmetric systems contacts arrive together.
@@ -11,11 +12,28 @@ TOGETHER = 1e-11
 
 
 @inner_kernel
-def _slide_end(motion, source, sign, shift):
-    """First zero of sign times a series without its first terms, which are zero."""
+def _lag(problem, friction, j):
+    """beta/k_t of an elastic contact whose normal load varies, else 0.
+
+    The force s beta nu of a contact that slips then changes its spring: y' = w - s beta nu'/k_t of the slider
+    is not the velocity w in the contact.
+    """
+    return friction.kinetic[j] / problem.spring[j] if has_force(problem, j) and varies(problem, j) else 0.0
+
+
+@inner_kernel
+def _watch_slide(problem, friction, motion, j, shift):
+    """Put the speed of a slide into the scratch, without its first terms, which are zero."""
+    sign, lag = float(motion.sense[j]), _lag(problem, friction, j)
+    velocity, nu = velocity_row(problem, j) * WIDTH + shift, normal_row(problem, j) * WIDTH + shift
     for k in range(0, TERMS, LANES):
-        store(load(motion.series, source * WIDTH + k + shift) * sign, motion.scratch, k)
-    return first_zero(motion.scratch, WATCHED)
+        speed = load(motion.series, velocity + k) * sign
+        if lag != 0.0:
+            rate = load(motion.series, nu + k + 1) * load(NEXT, k + shift)
+            speed = speed - rate * lag
+        store(speed, motion.scratch, k)
+    for k in range(TERMS, WIDTH, LANES):
+        store(filled(0.0), motion.scratch, k)
 
 
 @inner_kernel
@@ -47,8 +65,8 @@ def first_event(problem, friction, motion, j):
     side: 0 for a velocity that vanishes, else the side of its range that a force reaches.
     """
     if motion.sense[j] != 0:
-        end = _slide_end(motion, velocity_row(problem, j), float(motion.sense[j]), motion.fresh[j])
-        return end, 0
+        _watch_slide(problem, friction, motion, j, motion.fresh[j])
+        return first_zero(motion.scratch, WATCHED), 0
     found, side = NONE, 0
     if motion.idle[j]:
         return found, side
@@ -63,19 +81,24 @@ def first_event(problem, friction, motion, j):
 
 @kernel
 def watched_slope(problem, friction, motion, x, j, side):
-    """Rate of change, at the event (x, side) of a contact, of the quantity that is watched there."""
+    """Rate of change, at the event (x, side) of a contact, of the quantity that is watched there.
+
+    side = 0: the velocity of the slide.
+    """
     if side == 0:
-        return slope_at(motion.series, velocity_row(problem, j), x)
+        _watch_slide(problem, friction, motion, j, 0)
+        return motion.sense[j] * slope_at(motion.scratch, WATCHED, x)
     slope = friction.static[j] * slope_at(motion.series, normal_row(problem, j), x)
     return slope - side * slope_at(motion.series, force_row(problem, j), x)
 
 
 @kernel
-def comes_to_rest(problem, motion, x, j):
+def comes_to_rest(problem, friction, motion, x, j):
     """Whether the velocity of a slide is zero at x up to rounding error, and on its way down."""
-    w, size = velocity_row(problem, j), 0.0
+    _watch_slide(problem, friction, motion, j, 0)
+    size = 0.0
     for k in range(TERMS):
-        size += abs(motion.series[w, k])
-    if abs(value_at(motion.series, w, x)) > TOGETHER * size:
+        size += abs(motion.scratch[WATCHED, k])
+    if abs(value_at(motion.scratch, WATCHED, x)) > TOGETHER * size:
         return False
-    return motion.sense[j] * slope_at(motion.series, w, x) <= 0.0
+    return slope_at(motion.scratch, WATCHED, x) <= 0.0

@@ -1,13 +1,14 @@
-"""An elastic contact: a spring and a slider in series, |f| <= beta nu.
+"""An elastic contact: a spring and a slider in series, |f| <= beta nu(tau).
 
 Its force is a coordinate of the state, which never jumps.  While the slider slips it is the friction; else it
-changes with the displacement in the contact.
+changes with the displacement in the contact.  A slip ends where the slider stops, y' = 0.
 """
 
 from ....regimes import ONE_WAY_SLIDING, STICK_SLIP
 from ...compiler import kernel
 from ..counts import FIRST_SENSE, LAST_SENSE, REVERSALS, SLIPS, STUCK
-from ..problem import F, R
+from ..crossings import value_at
+from ..problem import F, R, normal_row
 from .coulomb import comes_to_rest
 from .kinds import has_force
 
@@ -28,19 +29,25 @@ def force_weight(problem, row, j):
 
 
 @kernel
-def _end_slip(friction, motion, j):
+def _limit_at(problem, friction, motion, x, j):
+    """Largest force at x of the present step."""
+    return friction.kinetic[j] * value_at(motion.series, normal_row(problem, j), x)
+
+
+@kernel
+def _end_slip(problem, friction, motion, x, j):
     """Let the slider rest."""
-    motion.state[F, j] = motion.sense[j] * friction.kinetic[j]
+    motion.state[F, j] = motion.sense[j] * _limit_at(problem, friction, motion, x, j)
     motion.fresh[j] = 2 * motion.sense[j]
     motion.sense[j] = 0
 
 
 @kernel
 def end_slips(problem, friction, motion, x):
-    """End the slips of all elastic contacts whose velocities are zero at x of the present step."""
+    """End the slips of all elastic contacts whose sliders stop at x of the present step."""
     for j in range(motion.sense.size):
-        if has_force(problem, j) and motion.sense[j] != 0 and comes_to_rest(problem, motion, x, j):
-            _end_slip(friction, motion, j)
+        if has_force(problem, j) and motion.sense[j] != 0 and comes_to_rest(problem, friction, motion, x, j):
+            _end_slip(problem, friction, motion, x, j)
 
 
 @kernel
@@ -50,11 +57,11 @@ def change_phase(problem, friction, motion, x, contact, side):
     Elements of a bank slip together, and so do contacts of a symmetric structure.
     """
     if side != 0:
-        motion.state[F, contact] = side * friction.kinetic[contact]
+        motion.state[F, contact] = side * _limit_at(problem, friction, motion, x, contact)
         motion.sense[contact] = side
-        motion.fresh[contact] = max(0, side * motion.fresh[contact] - 1)  # the force's zeros less one of w
+        motion.fresh[contact] = max(0, side * motion.fresh[contact] - 1)  # the force's zeros less one of y'
         return
-    _end_slip(friction, motion, contact)
+    _end_slip(problem, friction, motion, x, contact)
     end_slips(problem, friction, motion, x)
 
 

@@ -5,7 +5,7 @@ export function hasUnit(text) {
   return /^[+-]?\.?\d/.test(text.trim()) && !Number.isFinite(Number(text));
 }
 
-/** HTML of a field, and of the place next to it for what is wrong with its text. */
+/** HTML of a field, and of the place next to it for the refusal of its text. */
 export const FIELD = `<input type="text" class="number" inputmode="text" autocomplete="off" spellcheck="false">`;
 export const REFUSED = `<p class="refused" role="alert" hidden></p>`;
 
@@ -14,7 +14,7 @@ export function writeIn(input, value) {
   const kept = document.activeElement === input ? input.value : input.hasAttribute("aria-invalid") && input.dataset.written === value;
   if (kept) return;
   input.value = input.dataset.written = value;
-  if (input.hasAttribute("aria-invalid")) input.dispatchEvent(new Event("input")); // nothing is wrong with it any more
+  if (input.hasAttribute("aria-invalid")) input.dispatchEvent(new Event("input")); // the refusal is outdated
 }
 
 /**

@@ -155,7 +155,7 @@ def save_picture(
     ds : xarray.Dataset
         Any result.
     path : Path
-        File to write: .png, .pdf or .svg; .gif or .mp4 for the moving picture of a response.
+        File to write: .png, .pdf or .svg; .gif or .mp4 for the moving picture of a response or a history.
     quantity : str, optional
         What to draw; by default the first quantity available.
     log : bool
@@ -178,12 +178,13 @@ def save_picture(
 
 
 def _save_moving(ds: xr.Dataset, path: Path, quantity: str | None, options: FigureOptions) -> None:
-    """Write the moving picture of a response."""
+    """Write the moving picture of a response, or of a motion under a record."""
     what = kind(ds)
-    if what != "response" or quantity is not None:
+    if what not in ("response", "history") or quantity is not None:
         shown = f"a {what}" if quantity is None else f"{quantity!r}"
         raise InputError(
-            f"cannot write {shown} as a moving picture: only responses move; use {', '.join(FORMATS)}"
+            f"cannot write {shown} as a moving picture: only responses and histories move; "
+            f"use {', '.join(FORMATS)}"
         )
     moving = animate(ds, **options)
     moving.save(path, writer="pillow" if path.suffix.lower() == ".gif" else "ffmpeg", dpi=options.get("dpi"))

@@ -80,8 +80,76 @@ def test_maps_do_not_move(tmp_path):
     from frictionmap.plot import save_picture
 
     ds = fm.sweep(fm.System(), [0.5], [0.2])
-    with pytest.raises(fm.InputError, match=r"^cannot write a map as a moving picture: only responses move"):
+    with pytest.raises(
+        fm.InputError, match=r"^cannot write a map as a moving picture: only responses and histories move"
+    ):
         save_picture(ds, tmp_path / "map.gif")
+
+
+#: A frame on a moving base: a pulse, and friction in both storeys.
+PULSE = fm.Record([0.0, 3.0, -2.0, 1.0, -1.0, 0.0, 0.0], dt=0.05, quantity="acceleration", unit="m/s^2")
+FRAME = fm.System(
+    mass_ratios=[1, 1], stiffness_ratios=[1, 1], excitation="base", damping_ratios=0.02,
+    contacts=[
+        fm.Contact("joined-base-wall", masses=[1], ratio=1.0),
+        fm.Contact("between-masses", masses=[1, 2], ratio=0.5),
+    ],
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def shaken():
+    units = fm.Units(natural_frequency="1.5 Hz", mass="100 kg")
+    return fm.history(FRAME, PULSE, beta=["60 N"], units=units)
+
+
+def test_a_history_moves_under_its_record(shaken):
+    """Frames are at equal times, each the last state until then, in SI units."""
+    moving = fm.animate(shaken, seconds=2.0, fps=20.0)
+    frames = [*moving.new_frame_seq()]
+    one = shaken.squeeze(["record", "scale", "mu", "beta"])
+    time = one.time.values
+    moments = np.linspace(time[0], time[-1], 40)
+    lit = []
+    for frame, moment in zip(frames, moments, strict=True):
+        assert time[frame] <= moment
+        assert frame + 1 == time.size or time[frame + 1] > moment
+        moving._draw_frame(frame)
+        marks, _, dots = parts(moving)
+        cursor = next(line for line in moving._fig.axes[1].lines if line.get_color() == "#cc1f03")
+        assert cursor.get_xdata()[0] == time[frame]
+        at = one.isel(time=frame)
+        assert [mark.get_xdata()[0] for mark in marks] == [*at.x_m.values, *at.z_m.values]
+        assert [dot.get_ydata()[0] for dot in dots] == [*at.friction_N.values]
+        shown = [matplotlib.colors.to_hex(mark.get_markerfacecolor()) == "#f2a900" for mark in marks[2:]]
+        np.testing.assert_array_equal(shown, at.direction.values == 0)
+        lit += shown
+    assert any(lit)
+    assert not all(lit)
+    record = moving._fig.axes[1].lines[0]
+    np.testing.assert_array_equal(record.get_ydata(), one.drive.values)
+    assert moving._fig.axes[0].get_xlabel() == "displacement [m]"
+    assert moving._fig.axes[2].get_ylabel() == "contact force [N]"
+
+
+def test_plot_writes_the_moving_picture_of_a_history(shaken, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("frictionmap.plot.animate", functools.partial(fm.animate, seconds=0.2, fps=20.0))
+    shaken.to_netcdf("motion.nc")
+    assert main(["plot", "motion.nc", "-o", "motion.gif", "--size", "80mm"]) == 0
+    assert capsys.readouterr().out == "wrote motion.gif\n"
+    with Image.open(tmp_path / "motion.gif") as picture:
+        assert (picture.format, picture.n_frames) == ("GIF", 4)
+
+
+def test_histories_without_one_motion_are_refused():
+    several = fm.history(fm.System(), fm.Record([0.0, 1.0, 0.0], dt=1.0, quantity="force"), beta=[0.2, 0.3])
+    with pytest.raises(fm.InputError, match=r"choose one, such as ds\.isel\(beta=\[0\]\)$"):
+        fm.animate(several)
+    fm.animate(several.isel(beta=[0]), seconds=0.1)._draw_was_started = True  # the remedy works
+    pulse = fm.Record([0.0, 1.0, 0.0], dt=1.0, quantity="force")
+    with pytest.raises(fm.InputError, match='samples="all"'):
+        fm.animate(fm.history(fm.System(), pulse, beta=[0.2], samples="none"))
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from ..drawing import with_options
 from ..options import FigureOptions
 from ..palette import CLASSES, LINES, STUCK
 from ..panels import Handle, given_axes, legend_below, new_figure, title_figure
-from ..shapes import check_holds, to_draw
+from ..shapes import check_holds, check_range, to_draw
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -31,7 +31,7 @@ _FAINT: dict[str, Any] = {"linewidth": 0.7, "alpha": 0.35}
 _MOST_LINES = len(LINES)
 
 
-def _values_in_si(ds: xr.Dataset, name: str, suffix: str, unit: str) -> tuple[np.ndarray, str]:
+def values_in_si(ds: xr.Dataset, name: str, suffix: str, unit: str) -> tuple[np.ndarray, str]:
     """Values of a variable in SI units where they are there, and the unit in brackets."""
     in_si = f"{name}_{suffix}"
     return (ds[in_si].values, f" [{unit}]") if in_si in ds else (ds[name].values, "")
@@ -60,24 +60,59 @@ def _draw_rows(ax: Axes, time: np.ndarray, values: np.ndarray, words: str) -> li
     return [Line2D([], [], color=LINES[k % len(LINES)], label=f"{words} {k + 1}") for k in range(len(rows))]
 
 
+def time_words(ds: xr.Dataset) -> str:
+    """Name of the axis of time."""
+    return "time [s]" if ds["time"].attrs.get("units") == "s" else r"time [1/$\omega_1$]"
+
+
+def draw_record(ax: Axes, ds: xr.Dataset) -> None:
+    """Draw the record of a motion over time, with the times shaded in which all contacts stick."""
+    time = ds["time"].values
+    ax.plot(time, ds["drive"].values, color="black", linewidth=0.8)
+    ax.set_ylabel("record")
+    ax.margins(x=0.0)
+    _shade_stops(ax, time, _by_rows(ds["direction"].values))
+
+
 def _draw_traces(axes: "AxesArray", ds: xr.Dataset) -> list[Handle]:
     """Draw the record, the masses, and the forces in the contacts."""
     time = ds["time"].values
-    unit = " [s]" if ds["time"].attrs.get("units") == "s" else r" [1/$\omega_1$]"
-    drive = ds["drive"].values
-    axes[0].plot(time, drive, color="black", linewidth=0.8)
-    axes[0].set_ylabel("record")
-    x, length = _values_in_si(ds, "x", "m", "m")
+    draw_record(axes[0], ds)
+    x, length = values_in_si(ds, "x", "m", "m")
     handles = _draw_rows(axes[1], time, x, "mass")
     axes[1].set_ylabel(f"displacement{length}")
-    force, newton = _values_in_si(ds, "friction", "N", "N")
+    force, newton = values_in_si(ds, "friction", "N", "N")
     handles += _draw_rows(axes[2], time, force, "contact")
     axes[2].set_ylabel(f"contact force{newton}")
-    axes[2].set_xlabel(f"time{unit}")
-    for ax in axes:
+    axes[2].set_xlabel(time_words(ds))
+    for ax in axes[1:]:
         ax.margins(x=0.0)
         _shade_stops(ax, time, _by_rows(ds["direction"].values))
     return [*handles, Patch(color=CLASSES[STUCK].colour, alpha=0.35, label="all contacts stick")]
+
+
+def _is_single(ds: xr.Dataset) -> bool:
+    return all(ds.sizes[dim] == 1 for dim in CELL)
+
+
+def single_motion(ds: xr.Dataset) -> xr.Dataset:
+    """The only motion of a history, without the dimensions of several.
+
+    Raises
+    ------
+    InputError
+        There are several, or its samples are missing.
+    """
+    if not _is_single(ds):
+        several = ", ".join(f"{dim}=[0]" for dim in CELL if ds.sizes[dim] > 1)
+        raise InputError(f"cannot move several motions: one is drawn; choose one, such as ds.isel({several})")
+    if "time" not in ds.dims:
+        raise InputError(
+            'cannot move a motion without samples: the dataset has none; follow it with samples="all"'
+        )
+    check_holds(ds, ("x", "z", "friction", "direction", "drive"), "its motion")
+    check_range(ds, ("x", "z", "friction", "drive"))
+    return ds.squeeze(list(CELL))
 
 
 @with_options
@@ -107,7 +142,7 @@ def plot_history(
         The dataset is no history or lacks a variable to draw, or the number of axes is wrong.
     """
     ds = to_draw(ds, "plot_history", "history")
-    single = all(ds.sizes[dim] == 1 for dim in CELL) and "time" in ds.dims
+    single = _is_single(ds) and "time" in ds.dims
     if single:
         check_holds(ds, ("x", "friction", "direction", "drive"), "its motion")
     elif ds.sizes["beta"] == 1:
@@ -131,7 +166,7 @@ def plot_history(
 
 def _draw_peaks(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     """Draw the largest displacement of the last mass over friction: every record, and their median."""
-    values, unit = _values_in_si(ds, "amplitude", "m", "m")
+    values, unit = values_in_si(ds, "amplitude", "m", "m")
     peaks = values[..., -1].reshape(-1, *values.shape[2:-1])  # records and scales, mu, beta
     beta = ds["beta"].values
     handles: list[Handle] = []

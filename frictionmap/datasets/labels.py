@@ -329,6 +329,14 @@ GENERAL_VARIABLES = {
         least=0.0,
         nan=True,
     ),
+    "segment_crossings": Label(
+        np.float32,
+        "break points of the friction law that the sliding speed passes, per excitation period",
+        CELL,
+        comment="NaN where stuck or unresolved",
+        least=0.0,
+        nan=True,
+    ),
     "equivalent_stiffness": _range_label(
         "equivalent stiffness of the contact over k1",
         comment="real part of the first harmonic of the friction force over that of the motion",

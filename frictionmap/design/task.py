@@ -9,6 +9,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from ..features import peak_thresholds
+from ..model.general import refuse_law
 from ..model.system import System
 from ..solvers.choose import has_closed_forms
 from ..units.axes import KINDS, ratios, require
@@ -89,6 +90,7 @@ def checked_task(
     spread : relative spread of the friction
     """
     checks.instance(system, "system", System)
+    refuse_law(system, "answer design questions")
     scales = scales_of(units, system)
     require(scales, band=(KINDS["r"], band), beta=(KINDS["beta"], beta))
     found = checked_band(band, scales)
@@ -109,6 +111,7 @@ def checked_number(given: Any, name: str, kind: str, scales: Scales, **ends: flo
 def checked_boundary(system: Any, band: Any, mu: Any, units: Units | None) -> tuple[Band, Scales]:
     """Check the arguments of questions about boundaries."""
     checks.instance(system, "system", System)
+    refuse_law(system, "answer design questions")
     scales = scales_of(units, system)
     checks.number(mu, "mu", least=1.0)
     return checked_band(band, scales), scales

@@ -20,6 +20,8 @@ def lines_of(view: View) -> tuple[Line, ...]:
         return (_no_slip("no contact slips", _DASHED),)
     if elastic.any():
         return stick if k is not None else (_no_slip("no elastic contact slips", _DOTTED), *stick)
+    if view.system.contact_system.has_law:
+        return stick
     who = "no contact stops" if elastic.size > 1 else "continuous sliding is possible"
     return (Line(("beta_lim",), "lim", (), f"below: {who}"), *stick, *_further(view))
 

@@ -92,6 +92,11 @@ def sliding_states(problem: Problem, r: np.ndarray, size: float) -> np.ndarray:
     return np.ascontiguousarray(np.stack((response.real.sum(axis=2), velocity.real.sum(axis=2)), axis=1))
 
 
+def _one_way_limit(system: System, r: np.ndarray) -> np.ndarray:
+    """`belt_limit`; NaN where friction depends on the speed, and so the limit on the friction."""
+    return np.full(r.size, np.nan) if general_of(system).has_law else belt_limit(system, r)
+
+
 def find_boundaries(
     system: System, r: np.ndarray, mu: np.ndarray, threads: int | None = None, watch: Watch | None = None,
     intervals: int = INTERVALS,
@@ -106,12 +111,21 @@ def find_boundaries(
     needed = least_static_friction(system, r)
     by_contact = stick_scales(general, needed, mu)
     stick = by_contact.max(axis=2)
-    if general.elastic.any():
+    if general.elastic.any() or general.has_law:  # with a law the motion decides, see theory.md
         found = no_intervals((mu.size, r.size, intervals))
     else:
         lines = friction_lines(system, mu)
         found = find_intervals(system, r, mu, lines, needed, intervals, checks.threads(threads), watch)
     first = np.where(found.begins[:, :, 0] == 0.0, found.ends[:, :, 0], 0.0)
+    if general.has_law:
+        first = np.full_like(first, np.nan)
     return Boundaries(
-        stick, by_contact, first, found.begins, found.ends, belt_limit(system, r), found.kind, found.contact
+        stick,
+        by_contact,
+        first,
+        found.begins,
+        found.ends,
+        _one_way_limit(system, r),
+        found.kind,
+        found.contact,
     )

@@ -25,7 +25,12 @@ def has_closed_limits(system: System) -> bool:
     if general.free or general.count > 1 or general.elastic.any() or len(general.orders) > 1:
         return False
     contact = general.groups[0]
-    return not contact.first.belt and not contact.first.nu and contact.friction(0.0, 1.0)[0] == 0.0
+    return (
+        contact.first.law is None
+        and not contact.first.belt
+        and not contact.first.nu
+        and contact.friction(0.0, 1.0)[0] == 0.0
+    )
 
 
 def _plain(system: System) -> tuple[System, float]:

@@ -113,8 +113,8 @@ def general_curves(
         raise InputError("r", "must be > 0 for response curves of such systems; got 0")
     count = general.count
     limits = find_boundaries(system, r, mu)
-    problem, modal = problem_of(system, r)
-    unique = [general.has_equal_friction(float(value)) for value in mu]
+    problem, modal = problem_of(system, r, float(beta.max()))
+    unique = [general.has_equal_friction(float(value)) and not general.has_law for value in mu]
     further = wants_further(system, asked.quantities)
     shape = (mu.size, r.size, beta.size)
     tables: dict[str, np.ndarray] = {}

@@ -60,6 +60,8 @@ def boundary_variables(system: System, limits: Boundaries) -> dict[str, xr.Varia
         if general.elastic.all():
             return none
         return none | {"beta_stick": label_variable("beta_stick", limits.beta_stick)}
+    if general.has_law:
+        return {"beta_stick": label_variable("beta_stick", limits.beta_stick)}
     found = {
         "beta_lim": limits.beta_lim,
         "beta_stick": limits.beta_stick,
@@ -154,7 +156,7 @@ def general_boundaries(system: System, r: np.ndarray, mu: np.ndarray) -> xr.Data
     else:
         limits = find_boundaries(system, r, mu)
         variables = boundary_variables(system, limits)
-        if not contacts.elastic.any():
+        if not contacts.elastic.any() and not contacts.has_law:
             ended = find_limits(system, r, limits)
             variables["limit_kind"] = label_variable("limit_kind", ended.kind)
             if contacts.count > 1:

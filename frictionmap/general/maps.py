@@ -63,10 +63,10 @@ def solve_cells(
     mu, r = axes["mu"], axes["r"]
     beta = np.tile(axes["beta"], (r.size, 1)) if axes["beta"].ndim == 1 else axes["beta"]
     many = beta.shape[1]
-    problem, modal = problem_of(system, r)
+    problem, modal = problem_of(system, r, float(beta.max()))
     general = general_of(system)
     kinetic, static = friction_lines(system, mu)
-    unique = (static == kinetic).all(axis=(1, 2)) & (solver.skip == "exact")
+    unique = (static == kinetic).all(axis=(1, 2)) & (solver.skip == "exact") & (not general.has_law)
     sticks_from = [np.searchsorted(beta[i], beta_stick[:, i]) for i in range(r.size)]
     stuck_from = np.where(unique[:, np.newaxis], np.stack(sticks_from, axis=1), many)
     starts = initial_states(system, problem, modal, solver.start)

@@ -131,6 +131,9 @@ TABLE = {
         free=True,
     ),
     "release_order": Output(_cell("release_order"), wanted=_several),
+    "segment_crossings": Output(
+        _number("crossings"), (RIGID,), moving=True, wanted=lambda general: general.has_law
+    ),
 }
 
 #: Outputs of elastic contacts that take the place of those of rigid ones.

@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._kernels.general.problem import Problem
+from .._kernels.general.problem import FLAT, Law, Problem
 from ..errors import InputError
-from ..model.general import LOOP, ContactSystem
+from ..model.friction_law import FrictionLaw
+from ..model.general import LOOP, ContactSystem, refuse_law
 from ..model.system import System
 
 #: Largest rate of the fastest part of the motion, in tau.
@@ -93,21 +94,27 @@ def _phasors(channels: list[Channel], orders: tuple[int, ...], r: np.ndarray) ->
     return np.ascontiguousarray(np.stack((table.real, -table.imag), axis=1))
 
 
-def fastest(modal: ModalSystem, spring: np.ndarray) -> float:
+def fastest(modal: ModalSystem, spring: np.ndarray, damping: np.ndarray | None = None) -> float:
     """Bound on the rate of the fastest part of the motion, in t = tau/r.
 
     Holding contacts lowers natural frequencies or leaves them below the highest one; springs raise them.  The
     roots of l^2 + c l + k have moduli of (c + sqrt(c^2 + 4 k))/2 at most.
+
+    damping : (N,) moduli of the derivatives of friction forces by velocities
     """
     stiffness = np.diag(modal.squares) + modal.chi.T @ (spring[:, np.newaxis] * modal.chi)
     k = float(np.linalg.eigvalsh(stiffness)[-1])
     c = float(np.linalg.norm(modal.damping, 2))
+    if damping is not None and damping.any():
+        c += float(np.linalg.norm(modal.chi.T @ (damping[:, np.newaxis] * modal.chi), 2))
     return 0.5 * (c + np.sqrt(c * c + 4.0 * k))
 
 
-def _rates(modal: ModalSystem, spring: np.ndarray, orders: tuple[int, ...], r: np.ndarray) -> np.ndarray:
+def _rates(
+    modal: ModalSystem, spring: np.ndarray, orders: tuple[int, ...], r: np.ndarray, damping: np.ndarray
+) -> np.ndarray:
     """Bound on the rate of the fastest part of the motion, (n_r,), in tau."""
-    return np.maximum(fastest(modal, spring) / np.where(r > 0.0, r, 1.0), float(max(orders)))
+    return np.maximum(fastest(modal, spring, damping) / np.where(r > 0.0, r, 1.0), float(max(orders)))
 
 
 def least_ratio(system: System) -> float:
@@ -188,15 +195,38 @@ def ties(vectors: np.ndarray, moved: np.ndarray, belt: np.ndarray, spring: np.nd
     return found
 
 
-def problem_of(system: System, r: np.ndarray) -> tuple[Problem, ModalSystem]:
-    """Build the arrays of a system over r; values at r = 0 are placeholders."""
+def law_of(general: ContactSystem) -> Law:
+    """Friction over the speed of every contact, as arrays; see `_kernels.general.problem`."""
+    if not general.has_law:
+        return FLAT
+    laws = [group.first.law or FrictionLaw() for group in general.groups]
+    count = np.array([len(law.speed) for law in laws])
+    speed, factor, slope = (np.zeros((count.size, count.max())) for _ in range(3))
+    for j, law in enumerate(laws):
+        speed[j, : count[j]], factor[j, : count[j]], slope[j, : count[j]] = law.speed, law.factor, law.slopes
+    return Law(speed, factor - slope * speed, slope, count)
+
+
+def law_damping(general: ContactSystem, beta: float) -> np.ndarray:
+    """Largest modulus of the derivative of each friction force by its velocity up to a beta, (N,)."""
+    slopes = [max(map(abs, (group.first.law or FrictionLaw()).slopes)) for group in general.groups]
+    return np.array(slopes) * np.array([group.friction(beta, 1.0)[0] for group in general.groups])
+
+
+def problem_of(system: System, r: np.ndarray, beta: float | None = None) -> tuple[Problem, ModalSystem]:
+    """Build the arrays of a system over r; values at r = 0 are placeholders.
+
+    beta : the largest one; needed only where friction depends on the speed, and is damping by that
+    """
     general = general_of(system)
     refuse_loop(general)
     modal = modal_system(system)
     channels, orders = channels_of(system, modal), general.orders
     phasors = _phasors(channels, orders, r)
     spring = springs(general)
-    rates = _rates(modal, spring, orders, r)
+    if general.has_law and beta is None:
+        refuse_law(system, "compute this")
+    rates = _rates(modal, spring, orders, r, law_damping(general, beta or 0.0))
     _refuse_low(rates, r)
     if general.free and (r == 0.0).any():
         raise InputError("r", "must be > 0 for a free structure, which no slow load leaves at a place; got 0")
@@ -214,6 +244,6 @@ def problem_of(system: System, r: np.ndarray) -> tuple[Problem, ModalSystem]:
         np.ascontiguousarray(np.array([channel.base for channel in channels]).T),
         np.ascontiguousarray(np.array([channel.normal for channel in channels]).T),
         spring, belt, tied, np.array(orders, dtype=float), r, phasors,
-        rates, np.where(sizes > 0.0, sizes, 1.0), is_symmetric(general),
+        rates, np.where(sizes > 0.0, sizes, 1.0), is_symmetric(general), law_of(general),
     )  # fmt: skip
     return problem, modal

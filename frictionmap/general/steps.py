@@ -158,7 +158,7 @@ def steps_of(
     NoSteadyState
         None was found.
     """
-    problem, modal = problem_of(system, np.array([r]))
+    problem, modal = problem_of(system, np.array([r]), beta)
     return cell_steps(system, problem, modal, 0, beta, mu, solver, further)
 
 
@@ -183,7 +183,8 @@ def cell_steps(
             f"r = {problem.r[i]:g}, beta = {beta:g}, mu = {mu:g}: no steady state was found in "
             f"{found.cycles:.0f} periods; raise solver.cycles"
         )
-    if (friction.static == friction.kinetic).all() and _rests(system, problem, i, friction):
+    unique = bool((friction.static == friction.kinetic).all()) and not problem.law.speed.size
+    if unique and _rests(system, problem, i, friction):
         counts[[STOPS, TURNS, SLIPS, REVERSALS, MOVED]] = 0.0  # contacts at their limit, by rounding
     span, averaged = halves // 2, halves // 2
     period = shown = span

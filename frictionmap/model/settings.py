@@ -61,6 +61,7 @@ GeneralOutput = Literal[
     "base_force",
     "mean_velocity",
     "release_order",
+    "segment_crossings",
 ]
 GENERAL_OUTPUTS: tuple[str, ...] = get_args(GeneralOutput)
 

@@ -26,7 +26,8 @@ def engine_of(system: System) -> Engine:
             "normal_record",
             "under a periodic load: it is for motions in time; use history, or give normal_load",
         )
-    refuse_law(system, "compute steady states")
+    if system.contact_system.has_law and system.rigid_modes:
+        refuse_law(system, "compute steady states of a free structure")
     if has_closed_forms(system):
         from .single import SingleEngine
 

@@ -78,5 +78,23 @@ def test_speeds_of_a_law_may_have_units():
     """omega_1 P/k_1 is 1 m/s here."""
     units = fm.Units(natural_frequency="1 Hz", load="1 N", stiffness=f"{2 * np.pi} N/m")
     contact = {"law": {"speed": ["0 m/s", "500 mm/s"], "factor": [1.0, 0.7], "slope": 0.1}}
-    system = fm.system_in_units({"contacts": [contact]}, units)
+    system, _ = fm.system_in_units(units=units, contacts=[contact])
     assert system.contacts[0].law.speed[1] == pytest.approx(0.5, rel=1e-14)
+
+
+LAWFUL = fm.System(contacts=[fm.Contact(law={"speed": [0.0, 0.5], "factor": [1.0, 0.7]})])
+
+
+def test_what_is_not_offered_names_the_law():
+    with pytest.raises(fm.InputError, match=r"cannot answer design questions with contacts\[1\].law"):
+        fm.design.stuck(LAWFUL, (0.5, 1.5))
+    with pytest.raises(fm.InputError, match=r"cannot compute motions under records with contacts\[1\].law"):
+        fm.history(LAWFUL, fm.Record([0.0, 0.1, 0.0], 1.0, quantity="force"), 0.1)
+
+
+def test_boundaries_with_a_law_are_those_that_it_leaves():
+    """Static friction decides whether a contact sticks; friction without stops is not a closed form."""
+    ds = fm.boundaries(LAWFUL, [0.5, 1.5])
+    flat = fm.boundaries(fm.System(contacts=[fm.Contact()]), [0.5, 1.5])
+    assert ds.beta_stick.values.tolist() == flat.beta_stick.values.tolist()
+    assert "beta_lim" not in ds

@@ -6,4 +6,5 @@ NEAREST_STOP = 7  # largest share that friction has of the force that would hold
 FIRST_SENSE = 8  # of the slips of an elastic contact; 0 before the first
 RELEASE_ORDER = 9  # 1 where releasing all overloaded contacts at once would leave it in another state
 STOPS_ERROR, STUCK_ERROR = 10, 11  # standard errors per period of the load, of averages; else 0
-COUNT_ROWS = 12
+CROSSINGS = 12  # of break points of a friction law
+COUNT_ROWS = 13

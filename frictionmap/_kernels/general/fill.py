@@ -24,7 +24,18 @@ from ...regimes import (
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from ..extrapolation import CELLS, reaches, weight
-from .counts import MOVED, RELEASE_ORDER, REVERSALS, SLIPS, STOPS, STOPS_ERROR, STUCK, STUCK_ERROR, TURNS
+from .counts import (
+    CROSSINGS,
+    MOVED,
+    RELEASE_ORDER,
+    REVERSALS,
+    SLIPS,
+    STOPS,
+    STOPS_ERROR,
+    STUCK,
+    STUCK_ERROR,
+    TURNS,
+)
 from .laws.contact import regime_of
 from .laws.kinds import has_force
 from .places import fill_needs, keep_held, place_after_start
@@ -44,14 +55,15 @@ _UNKNOWN, _SOME_SLIP, _STAYS = 0, 1, 2
 
 
 #: Numbers of a contact that are stored, per period of the load: counted ones; standard errors of averages;
-#: least slip, sliding distance, works of friction and of a wall at constant velocity; displacement by drift.
+#: least slip, sliding distance, works of friction and of a wall at constant velocity; displacement by drift;
+#: break points of a law that are passed.
 NUMBERS = (
     "stops", "turns", "stuck", "slips", "reversals", "stops_error", "stuck_error",
-    "least_slip", "distance", "work_friction", "work_wall", "drift",
+    "least_slip", "distance", "work_friction", "work_wall", "drift", "crossings",
 )  # fmt: skip
 (
     _STOPS, _TURNS, _STUCK, _SLIPS, _REVERSALS, _STOPS_ERROR, _STUCK_ERROR,
-    _LEAST_SLIP, _DISTANCE, _WORK_FRICTION, _WORK_WALL, _DRIFT,
+    _LEAST_SLIP, _DISTANCE, _WORK_FRICTION, _WORK_WALL, _DRIFT, _CROSSINGS,
 ) = range(len(NUMBERS))  # fmt: skip
 
 
@@ -122,6 +134,7 @@ def _store_numbers(problem, numbers, m, i, b, counts, halves, record):
         numbers[_WORK_FRICTION, m, i, b, j] = record.works[OF_FRICTION, j] / period
         numbers[_WORK_WALL, m, i, b, j] = record.works[OF_WALL, j] / period
         numbers[_DRIFT, m, i, b, j] = record.drift[j] / period
+        numbers[_CROSSINGS, m, i, b, j] = counts[CROSSINGS, j] / period
 
 
 @kernel
@@ -316,7 +329,7 @@ def _solve_cell(problem, grid, m, i, b, friction, workspace, trail):
     """
     state, row, memory = grid.starts[i], workspace.row, workspace.memory
     _set_friction(grid, m, i, b, friction)
-    if trail.count[0] > 0 and is_unique(friction):
+    if trail.count[0] > 0 and is_unique(problem, friction):
         _begin_ahead(grid.beta[i, b], trail, memory)
         found, halves, multiplier = solve_from(
             problem, friction, state, grid.cycles, grid.tolerance, workspace, RANGES, True

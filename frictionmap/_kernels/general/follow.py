@@ -10,6 +10,7 @@ from .laws.contact import change_phase, count, jumps
 from .laws.coulomb import comes_to_rest, first_event, watched_slope
 from .laws.elastic import end_slips, rest_springs
 from .laws.kinds import has_constraint
+from .laws.speed import first_bound, has_law, is_at_speed, pass_break_point, set_segments
 from .pattern import FORCE, HOLDING, KINETIC, ORDER_MATTERS, PARTICIPATES, settle, stop_exactly
 from .problem import SECTION, H, force_row, normal_row
 from .record import record_step
@@ -31,11 +32,13 @@ FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
 
 
 @inner_kernel
-def _first_event(problem, friction, motion, end):
+def _first_event(problem, row, friction, motion, end):
     """Return (x, contact, side) of the first event in the present step up to `end`; x = NONE without one."""
     found, contact, side = NONE, -1, 0
     for j in range(motion.sense.size):
         x, of = first_event(problem, friction, motion, j)
+        if motion.sense[j] != 0 and has_law(problem):
+            x, of = first_bound(problem, row, motion, j, x, of)
         if x < found:
             found, contact, side = x, j, of
     if found > end:
@@ -73,6 +76,7 @@ def _settle(problem, row, friction, tau, motion, box, x, contact, side):
     for j in range(motion.sense.size):
         if box[PARTICIPATES, j] != 0.0:
             motion.fresh[j] = 1 if motion.sense[j] != 0 else 0
+            motion.segment[j] = 0
     end_slips(problem, friction, motion, x)
     return True
 
@@ -122,6 +126,9 @@ def pass_event(problem, row, friction, tau, motion, box, counts, event, derive):
     bool : False if the contacts do not determine their forces
     """
     x, contact, side = event
+    if is_at_speed(side):  # no force jumps, and nothing else changes
+        pass_break_point(motion, counts, contact, side)
+        return True
     if side == 0 and not has_constraint(problem, contact):
         contact = _arrives_instead(problem, friction, motion, x, contact)
     contacts = problem.spring.size
@@ -151,7 +158,11 @@ def pass_event(problem, row, friction, tau, motion, box, counts, event, derive):
         return False
     if derive:
         for j in range(contacts):
-            if not settles or not has_constraint(problem, j):
+            if (
+                not settles
+                or not has_constraint(problem, j)
+                or (has_law(problem) and box[PARTICIPATES, j] == 0.0)
+            ):
                 forces[j] = 0.0
             elif motion.sense[j] != 0:
                 forces[j] = motion.sense[j] * friction.kinetic[j] * scratch[_NORMAL, j] - scratch[_BEFORE, j]
@@ -184,7 +195,7 @@ def _cross(problem, row, friction, begin, interval, length, motion, box, counts,
     for _ in range(_MOST_EVENTS):
         rest = length - x
         expand(problem, row, friction, tau, interval if x == 0.0 else -1, motion, record.active[0] != 0)
-        event = _first_event(problem, friction, motion, rest)
+        event = _first_event(problem, row, friction, motion, rest)
         step = min(event[0], rest)
         if record.active[0] != 0:
             record_step(problem, row, motion, step, record)
@@ -218,6 +229,19 @@ def prepare(problem, row, friction, motion):
 
 
 @kernel
+def _forget_tables(problem, row, friction):
+    """Forget derivatives of motions that were under another friction, where they depend on it."""
+    if not has_law(problem):
+        return
+    same = True
+    for j in range(row.kinetic.size):
+        same = same and row.kinetic[j] == friction.kinetic[j]
+        row.kinetic[j] = friction.kinetic[j]
+    for k in range(0 if same else row.patterns.size):
+        row.patterns[k] = 0
+
+
+@kernel
 def follow(problem, row, friction, part, motion, box, counts, record, derive):
     """Follow the motion for half a period of the load.
 
@@ -242,6 +266,8 @@ def follow(problem, row, friction, part, motion, box, counts, record, derive):
     # a state that Newton's method or other states led to, with their errors
     set_channels(problem, row, SECTION + part * intervals * h, part * intervals, motion)
     stop_exactly(problem, row, motion)
+    set_segments(problem, row, motion)
+    _forget_tables(problem, row, friction)
     if derive:
         hold_tangent(problem, row, motion)
     glides = record.active[0] == 0 and can_glide(problem, row)

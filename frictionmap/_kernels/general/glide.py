@@ -15,6 +15,7 @@ from ..compiler.vectors import LANES, filled, least, load, mask_above, most, sto
 from .crossings import fill_controls
 from .laws.contact import has_tables
 from .laws.kinds import state_size
+from .laws.speed import has_law
 from .problem import SECTION, WIDTH, F, H, P, Q, first_contact_row, varies
 from .series import Friction, advance, expand
 from .tangent import pattern_slot
@@ -24,10 +25,12 @@ _ALL = 2**LANES - 1
 
 @inner_kernel
 def can_glide(problem, row):
-    """Whether intervals can be passed: loads are kept, normal loads constant, no spring is behind a belt."""
+    """Whether intervals can be passed: loads are kept, normal loads constant, no spring is behind a belt, and
+    no friction depends on the speed.
+    """
     if 2 * row.intervals[0] * problem.push.shape[1] > row.loads.shape[0]:
         return False
-    possible = True
+    possible = not has_law(problem)
     for j in range(problem.spring.size):
         possible = possible and has_tables(problem, j) and not varies(problem, j)
     return possible

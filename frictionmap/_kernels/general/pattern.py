@@ -13,6 +13,7 @@ import numpy as np
 from ..compiler import kernel
 from .laws.coulomb import TOGETHER
 from .laws.kinds import has_constraint, is_constrained, keeps_force
+from .laws.speed import factor_at, set_segments
 from .problem import F, H, P, Q, force_row
 from .row import set_channels
 from .series import factor_held, solve_held
@@ -254,6 +255,8 @@ def _take_part(problem, row, friction, tau, motion, box):
         if is_constrained(problem, motion, j):
             box[PARTICIPATES, j] = 1.0
         series[force_row(problem, j), 0] = motion.sense[j] * box[KINETIC, j]
+        if motion.sense[j] != 0:
+            series[force_row(problem, j), 0] *= factor_at(problem, row, motion, j)
         if keeps_force(problem, motion, j):
             series[force_row(problem, j), 0] = motion.state[F, j]
     _free_accelerations(problem, row, motion, box)
@@ -312,9 +315,11 @@ def begin(problem, row, friction, tau, motion, box):
         w = slide_velocity(problem, row, motion, j)
         motion.fresh[j] = 0
         motion.sense[j] = int(np.sign(w)) if has_constraint(problem, j) else 0
+    set_segments(problem, row, motion)
     if not settle(problem, row, friction, tau, motion, box, -1, -1):
         return False
     for j in range(motion.sense.size):
         if box[PARTICIPATES, j] != 0.0 and motion.sense[j] != 0:
             motion.fresh[j] = 1
+            motion.segment[j] = 0
     return True

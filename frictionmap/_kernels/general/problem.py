@@ -50,6 +50,19 @@ Q, P, F = 0, 1, 2
 WATCHED = 0
 
 
+class Law(NamedTuple):
+    """Friction over the speed, in S segments at most; S = 0 where no friction depends on it."""
+
+    speed: np.ndarray  # (N, S) speed at which a segment begins, over omega_1 P/k_1
+    constant: np.ndarray  # (N, S) friction of its line at speed 0, over that just above speed 0
+    slope: np.ndarray  # (N, S)
+    count: np.ndarray  # (N,) int: segments
+
+
+#: Friction that does not depend on the speed.
+FLAT = Law(np.zeros((0, 0)), np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0, np.int64))
+
+
 class Problem(NamedTuple):
     """A system over r; m modes, N contacts, D channels, H harmonics."""
 
@@ -69,6 +82,7 @@ class Problem(NamedTuple):
     rates: np.ndarray  # (n_r,) bound on the rate of the fastest part of the motion
     sizes: np.ndarray  # (n_r,) displacement of the modes that a load at this r can be expected to cause
     symmetric: bool  # L(tau + pi) = -L(tau), nothing else breaks the mirror symmetry
+    law: Law = FLAT
 
 
 class Parts(NamedTuple):
@@ -118,6 +132,7 @@ class Row(NamedTuple):
     onward: np.ndarray  # (P, size, S) the state at the end of the interval by that at its beginning
     grips: np.ndarray  # (P, N, S) forces of rigid contacts that are held, by the state
     parts: Parts
+    kinetic: np.ndarray  # (N,) kinetic friction of the tables where they depend on it, see `follow`
 
 
 class Motion(NamedTuple):
@@ -144,6 +159,8 @@ class Motion(NamedTuple):
     forces: np.ndarray  # (N, S) the derivatives of the forces
     watched: np.ndarray  # (S,) the derivatives of the watched quantity at an event
     units: np.ndarray  # (size + N,) the state, then the friction forces
+    segment: np.ndarray  # (N,) int: segment of the friction law in which a contact slides
+    law_damping: np.ndarray  # (N,) derivative of its force by dz/dx
 
 
 @kernel

@@ -10,6 +10,7 @@ from .crossings import first_zero, next_turn, value_at
 from .events import MOST, Events, list_step, make_events
 from .laws.contact import moves_one_way
 from .laws.kinds import has_force
+from .laws.speed import has_law
 from .problem import LONG, SIZE, TERMS, WIDTH, H, R, first_contact_row, varies
 
 NOTHING, RANGES, STEPS, FORCES, EVENTS = 0, 1, 2, 3, 4
@@ -261,7 +262,7 @@ def keep_works(problem, row, motion, end, record, first):
             way -= _taken_by_spring(problem, series, force, end, j)
             record.distance[j] += abs(way)
             record.slips[_PRESENT, j] += abs(way)
-            if varies(problem, j):
+            if varies(problem, j) or has_law(problem):
                 record.works[OF_FRICTION, j] += _integral_of_product(series, force, first + contacts + j, end)
                 record.works[OF_FRICTION, j] -= _kept_in_spring(problem, series, force, end, j)
             else:

@@ -8,6 +8,7 @@ from ..compiler import entry, kernel
 from ..compiler.vectors import LANES, filled, load, store
 from .laws.contact import force_weight
 from .laws.kinds import state_size
+from .laws.speed import has_law
 from .problem import LONG, PIECE_TERMS, SECTION, SIZE, TERMS, TURN, WIDTH, H, Motion, Parts, R, Row, padded
 
 #: Intervals of a period whose load is kept, and patterns whose derivatives are.
@@ -53,7 +54,7 @@ def make_row(problem):
     channels, harmonics = problem.push.shape[1], problem.orders.size
     width, size = padded(modes), state_size(problem)
     most = most_intervals(problem, _KEPT_INTERVALS)
-    kept = min(1 << contacts, _KEPT_PATTERNS)
+    kept = _KEPT_PATTERNS if has_law(problem) else min(1 << contacts, _KEPT_PATTERNS)
     return Row(
         np.empty(3), np.zeros(1, np.int64), np.empty(modes), np.empty((modes, modes)),
         np.zeros((TERMS, width)), np.zeros((TERMS, width)), np.zeros((modes, width)),
@@ -62,7 +63,8 @@ def make_row(problem):
         np.zeros((harmonics, WIDTH)),
         np.empty((2, channels, harmonics)), np.empty((most * channels, WIDTH)), np.zeros(kept, np.int64),
         np.empty((kept, LONG, modes, padded(size))), np.empty((kept, size, padded(size))),
-        np.empty((kept, contacts, padded(size))), _make_parts(problem, kept, most),
+        np.empty((kept, contacts, padded(size))), _make_parts(problem, 1 if has_law(problem) else kept, most),
+        np.zeros(contacts),
     )  # fmt: skip
 
 
@@ -80,6 +82,7 @@ def make_motion(problem):
         np.zeros((LONG, width)), np.zeros((contacts + 1, contacts)), np.zeros(contacts + 1, np.int64),
         np.zeros((8, WIDTH)), np.zeros(1), np.zeros((size, rows)), np.zeros((2, size, rows)),
         np.zeros((contacts, rows)), np.zeros(rows), np.zeros(size + contacts),
+        np.zeros(contacts, np.int64), np.zeros(contacts),
     )  # fmt: skip
 
 
@@ -174,6 +177,7 @@ def set_interval(problem, i, row, h):
         row.yields[j] = force_weight(problem, row, j)
     for k in range(row.patterns.size):
         row.patterns[k] = 0
+    for k in range(row.parts.known.size):
         row.parts.known[k] = 0
     for k in range(row.parts.loads_known.size):
         row.parts.loads_known[k] = 0

@@ -13,6 +13,7 @@ from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store, total
 from .crossings import value_at
 from .laws.kinds import holding_stiffness, is_constrained, is_spring, keeps_force
+from .laws.speed import constant_factor, law_forces, set_law_damping
 from .problem import INVERSE, LONG, NEXT, TERMS, WIDTH, F, H, first_contact_row
 from .row import set_channels
 
@@ -87,7 +88,7 @@ def _known_forces(problem, friction, motion, first):
     series = motion.series
     for j in range(contacts):
         force, nu = (first + 2 * contacts + j) * WIDTH, (first + 3 * contacts + j) * WIDTH
-        size = motion.sense[j] * friction.kinetic[j]
+        size = motion.sense[j] * friction.kinetic[j] * constant_factor(problem, motion, j)
         for k in range(0, WIDTH, LANES):
             store(load(series, nu + k) * size, series, force + k)
         if keeps_force(problem, motion, j):
@@ -245,12 +246,15 @@ def expand(problem, row, friction, tau, interval, motion, whole):
     for m in range(0, width, LANES):
         store(load(motion.state, m), motion.moves, m)
         store(load(motion.state, motion.state.shape[1] + m), motion.moves, width + m)
-    if _all_slide(motion) and not problem.coupled:
+    sloped = set_law_damping(problem, row, friction, motion)
+    if _all_slide(motion) and not problem.coupled and not sloped:
         _free_terms(problem, row, motion, first)
     else:
         for k in range(TERMS):
             if k > 0:
                 _spring_forces(problem, row, k, motion, first)
+            if sloped:
+                law_forces(problem, row, k, motion)
             _free_term(problem, row, k, motion, first)
             if motion.held[contacts] > 0:
                 _hold_term(problem, row, k, motion, first)

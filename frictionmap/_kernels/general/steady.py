@@ -25,6 +25,7 @@ from .course import (
 )
 from .creep import end_creep, find_held, find_rest, keep_friction, restore_friction
 from .follow import FOLLOWED
+from .laws.speed import has_law
 from .orbits import (
     AVERAGED,
     CHATTERS,
@@ -228,7 +229,7 @@ def find(problem, friction, cycles, tolerance, workspace):
     """
     workspace.ring.count[0] = 0
     keep(workspace.memory, workspace.ring)
-    if is_unique(friction):
+    if is_unique(problem, friction):
         return _find_unique(problem, friction, cycles, tolerance, workspace)
     return _find_from_start(problem, friction, cycles, tolerance, workspace)
 
@@ -308,9 +309,11 @@ def begin_row(problem, i, workspace):
 
 
 @kernel
-def is_unique(friction):
-    """Whether the velocities of the steady state do not depend on the start: mu = 1 in all contacts."""
-    unique = True
+def is_unique(problem, friction):
+    """Whether the velocities of the steady state do not depend on the start: mu = 1 in all contacts, and no
+    friction that depends on the speed, where that is not known.
+    """
+    unique = not has_law(problem)
     for j in range(friction.static.size):
         unique = unique and friction.static[j] <= friction.kinetic[j]
     return unique
@@ -362,7 +365,7 @@ def _settle(problem, friction, state, found, cycles, tolerance, workspace):
     row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     places, ring = workspace.places, workspace.ring
     halves = found.halves if found.halves % 2 == 0 else 2 * found.halves
-    if not is_unique(friction):  # the motion is near the steady state, which stays where it cannot be moved
+    if not is_unique(problem, friction):  # the motion is near the steady state, and stays if not moved
         fill_flexibility(problem, places)
         if not keep_orbit(problem, friction, halves, workspace):
             take_orbit(memory, ring)
@@ -424,7 +427,7 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
     Steady, half periods measured, multiplier
     """
     row, memory, record = workspace.row, workspace.memory, workspace.record
-    base, unique = base_halves(problem), is_unique(friction)
+    base, unique = base_halves(problem), is_unique(problem, friction)
     by_tables = what == RANGES and unique and fits_row(problem, row, workspace.single, base)
     keep_friction(friction, workspace.places.limits)
     found = _locate(problem, friction, cycles, tolerance, workspace, by_tables)
@@ -433,7 +436,9 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
         copy_motion(memory.start, memory.senses, workspace.ring.orbit, workspace.ring.orbit_senses)
         if not unique:  # the last way was not over the whole period
             go_round(problem, row, friction, found.halves, workspace.motion, memory, record, False)
-        if find_rests(memory, workspace.places) > 0 and not is_free(problem):
+        if has_law(problem):  # the motion from the start brought the contacts at rest to their places
+            pass
+        elif find_rests(memory, workspace.places) > 0 and not is_free(problem):
             found = _settle(problem, friction, state, found, cycles, tolerance, workspace)
         elif unique:
             if by_tables:

@@ -9,6 +9,7 @@ before it.
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store
 from .laws.kinds import has_force, holding_stiffness, is_spring, keeps_force, state_size
+from .laws.speed import has_law
 from .problem import INVERSE, LONG, TERMS
 
 
@@ -93,6 +94,25 @@ def _free_columns(problem, row, motion, k, first):
 
 
 @inner_kernel
+def _law_term(problem, row, motion, k, first):
+    """Take the derivatives of friction forces by the velocities of sliding contacts from term k + 2."""
+    modes = problem.push.shape[0]
+    columns, size = row.columns, motion.tangent.shape[1]
+    for j in range(problem.spring.size):
+        if motion.law_damping[j] == 0.0:
+            continue
+        rate = (k + 1.0) * motion.law_damping[j]
+        for i in range(0, size, LANES):
+            force = filled(0.0)
+            for m in range(modes):
+                place = load(columns, first + ((k + 1) * modes + m) * size + i)
+                force = force + place * (rate * problem.chi[j, m])
+            for m in range(modes):
+                at = first + ((k + 2) * modes + m) * size + i
+                store(load(columns, at) - force * (INVERSE[k] * row.reaction[j, m]), columns, at)
+
+
+@inner_kernel
 def _holding_columns(problem, row, motion, k, first):
     """Fill the derivatives of the holding forces, over (k+1)(k+2), and take them from term k + 2."""
     modes = problem.push.shape[0]
@@ -167,6 +187,8 @@ def _fill_pattern(problem, row, motion, slot):
         if k == 0:
             _own_force(problem, row, motion, slot)
         _spring_term(problem, row, motion, k, first)
+        if has_law(problem):
+            _law_term(problem, row, motion, k, first)
         if motion.held[contacts] > 0:
             _holding_columns(problem, row, motion, k, first)
         if k == 0:
@@ -177,10 +199,21 @@ def _fill_pattern(problem, row, motion, slot):
 
 
 @kernel
-def pattern_slot(problem, row, motion):
-    """Place of the present pattern in the tables of the row, filled if it is new there."""
+def _law_pattern(problem, motion):
+    """Number of the present pattern where friction has segments: a digit per contact, 0 where it is held."""
     pattern = 0
     for j in range(motion.sense.size):
+        pattern *= problem.law.count[j] + 1
+        if motion.sense[j] != 0:
+            pattern += motion.segment[j] + 1
+    return pattern
+
+
+@kernel
+def pattern_slot(problem, row, motion):
+    """Place of the present pattern in the tables of the row, filled if it is new there."""
+    pattern = _law_pattern(problem, motion) if has_law(problem) else 0
+    for j in range(0 if has_law(problem) else motion.sense.size):
         if motion.sense[j] == 0:
             pattern += 1 << j
     slot = pattern % row.patterns.size

@@ -9,6 +9,7 @@ from ... import checks
 from ...datasets.design_labels import beta_label, r_label
 from ...datasets.labels import Label
 from ...files.key import Key, either, number, with_unit
+from ...model.general import refuse_law
 from ...model.system import System
 from ...units.axes import KINDS, require
 from ...units.scales import Units, scales_of
@@ -59,6 +60,7 @@ def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units |
     from ..task import checked_number
 
     checks.instance(system, "system", System)
+    refuse_law(system, "answer design questions")
     scales = scales_of(units, system)
     require(scales, r=(KINDS["r"], r), beta=(KINDS["beta"], beta))
     r = checked_number(r, "r", KINDS["r"], scales, above=0.0, most=checks.LARGEST_RATIO)

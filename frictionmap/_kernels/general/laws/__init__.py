@@ -8,6 +8,7 @@ each of which the motion is linear: it slides up or down, or it is held, by a co
 module    what is in it
 ========  ========================================================================================
 kinds     which law a contact has; constraint, stiffness and coordinates of its present phase
+speed     friction over the sliding speed: segments, the events between them, what depends on velocity
 coulomb   limits of Coulomb friction, which all laws have: watched quantities, their first zero
 rigid     held by a constraint; forces jump where it arrives, and where it is released for mu > 1
 elastic   a spring and a slider in series: its force is a coordinate of the state and never jumps

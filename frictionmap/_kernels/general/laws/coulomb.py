@@ -5,6 +5,7 @@ from ...compiler.vectors import LANES, filled, load, store
 from ..crossings import NONE, first_zero, slope_at, value_at
 from ..problem import NEXT, TERMS, WATCHED, WIDTH, force_row, normal_row, varies, velocity_row
 from .kinds import has_force
+from .speed import ROSE
 
 #: A velocity within this share of its size, on its way to zero, is zero together with one that is: in
 #: symmetric systems contacts arrive together.
@@ -65,7 +66,10 @@ def first_event(problem, friction, motion, j):
     side: 0 for a velocity that vanishes, else the side of its range that a force reaches.
     """
     if motion.sense[j] != 0:
-        _watch_slide(problem, friction, motion, j, motion.fresh[j])
+        if motion.segment[j] > 0:  # faster than a break point, see `speed`
+            return NONE, 0
+        zeros = motion.fresh[j] if motion.fresh[j] < ROSE else 0
+        _watch_slide(problem, friction, motion, j, zeros)
         return first_zero(motion.scratch, WATCHED), 0
     found, side = NONE, 0
     if motion.idle[j]:

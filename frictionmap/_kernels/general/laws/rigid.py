@@ -34,6 +34,7 @@ def change_phase(problem, friction, motion, x, contact, side):
         if j == contact or (sign * load >= limit * (1.0 - _AT_LIMIT) and rate > 0.0):
             motion.sense[j] = sign
             motion.fresh[j] = 2
+            motion.segment[j] = 0
 
 
 @kernel

@@ -1,0 +1,202 @@
+"""Friction over the sliding speed in steady states: known values, limiting cases, a twin with fixed steps."""
+
+import numpy as np
+import pytest
+
+import frictionmap as fm
+
+FALLING = {"speed": [0.0, 0.5], "factor": [1.0, 0.7], "slope": 0.1}
+STRIBECK = {"speed": [0.0, 0.2, 0.6], "factor": [1.0, 0.75, 0.8], "slope": 0.15}
+
+#: Rows of laws.json in which the motion from rest reaches another one of several steady states.
+SEVERAL = "one of several steady states of this system"
+
+
+def one_mass(law, zeta=0.05, **contact):
+    return fm.System(damping_ratios=zeta, contacts=[fm.Contact(law=law, **contact)])
+
+
+def chain(first, second, damping=None):
+    """Two masses with a contact each."""
+    m, k = np.diag([1.0, 1.3]), np.array([[2.0, -1.0], [-1.0, 1.2]])
+    c = 0.04 * k if damping is None else damping
+    return fm.System(
+        matrices={"M": m, "K": k, "C": c}, contacts=[first, second],
+        load_harmonics={1: [1.0, 0.3j], 3: [0.2, 0.0]}, frequency_scale=1.0, stiffness_scale=1.0,
+    )  # fmt: skip
+
+
+def ends(ds):
+    middle, half = ds["midpoint"].values, 0.5 * ds["peak_to_peak"].values
+    return np.concatenate((np.atleast_1d(middle - half), np.atleast_1d(middle + half)))
+
+
+@pytest.mark.parametrize(
+    ("r", "largest", "stops", "stuck", "crossings"),
+    [(0.8, 2.168194338787, 0, 0.0, 4), (0.4, 1.141329788750, 2, 0.348192466119, 4)],
+)
+def test_known_steady_states_of_one_mass(r, largest, stops, stuck, crossings):
+    """Values of two programs that share no code with this one, to the digits that are known."""
+    cell = fm.response(one_mass(FALLING), r, 0.5)
+    assert float(cell.amplitude[0]) == pytest.approx(largest, abs=1e-12)
+    assert float(cell.stops_per_cycle) == stops
+    assert float(cell.stuck_fraction) == pytest.approx(stuck, abs=1e-7)  # a 32-bit number
+    assert float(cell.segment_crossings) == crossings
+
+
+def naive(r, beta, mu, law, zeta, wall, periods=60, steps=2**13):
+    """Lowest and highest displacement of one mass by fixed steps with a clipped impulse of friction."""
+    h, x, v, tau = 2.0 * np.pi / steps, 0.0, 0.0, 0.0
+    low, high = np.inf, -np.inf
+    for k in range(periods * steps):
+        rate = (np.cos(tau + 0.5 * h) - x - 0.5 * h * v - 2.0 * zeta * r * v) / r**2
+        free = v + h * rate - wall / r
+        slides = abs(v - wall / r) > 1e-14
+        limit = h * beta / r**2 * (float(law(r * abs(v - wall / r))) if slides else mu)
+        new = free - np.clip(free, -limit, limit) + wall / r
+        x += 0.5 * h * (v + new)
+        v, tau = new, (k + 1) * h
+        if k >= (periods - 1) * steps:
+            low, high = min(low, x), max(high, x)
+    return low, high
+
+
+@pytest.mark.parametrize(
+    ("r", "beta", "mu", "wall"), [(0.45, 0.4, 1.0, 0.0), (0.7, 0.3, 1.0, 0.25), (0.35, 0.5, 1.2, 0.0)]
+)
+def test_a_twin_with_fixed_steps_has_the_same_motion(r, beta, mu, wall):
+    """The twin is of first order: its error is about the angle of a step, 8e-4."""
+    law = fm.Contact(law=STRIBECK).law
+    cell = fm.response(one_mass(STRIBECK, 0.1, wall_speed=wall), r, beta, mu)
+    assert ends(cell) == pytest.approx(naive(r, beta, mu, law, 0.1, wall), abs=3e-3)
+
+
+@pytest.mark.parametrize("mu", [1.0, 1.3])
+@pytest.mark.parametrize("r", [0.31, 0.8, 1.6])
+def test_break_points_beyond_all_speeds_change_nothing(r, mu):
+    law = {"speed": [0.0, 50.0, 60.0], "factor": [1.0, 1.0, 0.5]}
+    own, other = (
+        chain(fm.Contact(masses=1, law=one), fm.Contact("between-masses", [1, 2], ratio=0.4))
+        for one in (law, None)
+    )
+    with_law, without = (fm.response(one, r, 0.3, mu) for one in (own, other))
+    assert ends(with_law) == pytest.approx(ends(without), abs=1e-11)
+    assert with_law.stops_per_cycle.values.tolist() == without.stops_per_cycle.values.tolist()
+    assert with_law.work_friction.values == pytest.approx(without.work_friction.values, abs=1e-11)
+
+
+@pytest.mark.parametrize("slope", [0.3, 0.05])
+@pytest.mark.parametrize("r", [0.31, 0.8, 1.6])
+def test_one_rising_segment_is_viscous_damping(r, slope):
+    """f = beta (sgn w + a r w): the dashpot beta a in the contact."""
+    beta, k = 0.3, np.array([[2.0, -1.0], [-1.0, 1.2]])
+    second = fm.Contact("between-masses", [1, 2], force=0.1)
+    law = {"speed": [0.0], "factor": [1.0], "slope": slope}
+    own = chain(fm.Contact(masses=1, force=beta, law=law), second)
+    other = chain(fm.Contact(masses=1, force=beta), second, 0.04 * k + beta * slope * np.diag([1.0, 0.0]))
+    found, expected = (fm.response(one, r, 1.0) for one in (own, other))
+    assert ends(found) == pytest.approx(ends(expected), abs=1e-11)
+    assert float(found.multiplier) == pytest.approx(float(expected.multiplier), abs=1e-9)
+
+
+def test_a_break_point_between_equal_slopes_changes_nothing():
+    one = {"speed": [0.0, 0.8], "factor": [1.0, 0.6], "slope": 0.0}
+    two = {"speed": [0.0, 0.3, 0.8], "factor": [1.0, 0.85, 0.6], "slope": 0.0}
+    for r in (0.4, 0.9):
+        found, expected = (fm.response(one_mass(law, 0.2), r, 0.4) for law in (two, one))
+        assert ends(found) == pytest.approx(ends(expected), abs=1e-12)
+        assert float(found.segment_crossings) == float(expected.segment_crossings) + 4.0
+
+
+def test_the_order_of_contacts_does_not_matter():
+    first, second = (
+        fm.Contact(masses=1, force=0.3, law=STRIBECK, wall_speed=0.2),
+        fm.Contact("between-masses", [1, 2], force=0.2, law=FALLING),
+    )
+    found, other = (fm.response(chain(*pair), 0.7, 1.0) for pair in ((first, second), (second, first)))
+    assert ends(found) == pytest.approx(ends(other), abs=1e-12)
+    assert found.segment_crossings.values.tolist() == other.segment_crossings.values[::-1].tolist()
+
+
+def test_a_belt_that_runs_the_other_way_mirrors_the_motion():
+    there, back = (fm.response(one_mass(STRIBECK, 0.1, wall_speed=wall), 0.7, 0.4) for wall in (0.3, -0.3))
+    low, high = ends(there)
+    assert ends(back) == pytest.approx((-high, -low), abs=1e-12)
+
+
+def test_works_balance():
+    system = chain(
+        fm.Contact(masses=1, force=0.3, law=STRIBECK, wall_speed=0.2),
+        fm.Contact("between-masses", [1, 2], force=0.2, law=FALLING),
+    )
+    cell = fm.response(system, 0.7, 1.0)
+    given = float(cell.work_input) + float(cell.work_wall.sum())
+    assert given == pytest.approx(float(cell.work_friction.sum() + cell.work_damping), rel=1e-11)
+
+
+@pytest.mark.parametrize("r", [0.35, 0.6, 0.95, 1.4])
+def test_both_starts_agree_where_the_steady_state_is_unique(r):
+    """beta |a| = 0.95 c, the damping of one mass: C1 + beta a c c^T > 0 (Q)."""
+    law = {"speed": [0.0, 0.4, 1.0], "factor": [1.0, 0.9, 0.85], "slope": 0.0}
+    system = one_mass(law, 0.1)
+    beta = 0.95 * 0.2 / 0.25
+    found = [fm.response(system, r, beta, solver=fm.Solver(start=start)) for start in ("rest", "moving")]
+    assert ends(found[0]) == pytest.approx(ends(found[1]), abs=1e-11)
+
+
+def test_a_map_has_the_cells_of_single_motions():
+    law = fm.Contact(law=STRIBECK, wall_speed=0.2)
+    system = fm.System(damping_ratios=0.1, contacts=[law])
+    ds = fm.sweep(system, [0.4, 0.9], [0.1, 0.4, 3.0], outputs=["peak_to_peak", "segment_crossings"])
+    for i, r in enumerate((0.4, 0.9)):
+        for b, beta in enumerate((0.1, 0.4, 3.0)):
+            cell = fm.response(system, r, beta)
+            assert ds.peak_to_peak[0, i, b, 0] == pytest.approx(float(cell.peak_to_peak[0]), abs=1e-11)
+    assert "beta_lim" not in ds
+
+
+def reference_system(row):
+    """System of a row of laws.json, its friction as forces."""
+    contacts = []
+    for one in row["contacts"]:
+        vector = np.array(one["c"])
+        masses = np.flatnonzero(vector)
+        law = None
+        if "law" in one:
+            speed, factor = zip(*one["law"], strict=True)
+            law = {"speed": speed, "factor": factor, "slope": one["slope_end"]}
+        contacts.append(
+            fm.Contact(
+                "fixed-wall" if masses.size == 1 else "between-masses", (masses + 1).tolist(),
+                force=one["beta"], mu=one["mu"], law=law,
+                wall_speed=one.get("wall_speed", 0.0) * float(vector[masses[-1]]),
+            )
+        )  # fmt: skip
+    loads = {int(n): [complex(*one) for one in load] for n, load in row["loads"].items()}
+    matrices = {name: np.array(row[name], dtype=float) for name in "MCK"}
+    return fm.System(
+        matrices=matrices, contacts=contacts, load_harmonics=loads, frequency_scale=1.0, stiffness_scale=1.0
+    )
+
+
+@pytest.mark.reference
+def test_reference_motions(reference_table):
+    """Motions from rest of random systems, by two programs that agree to 5e-13."""
+    table = reference_table("laws.json")
+    rows = [*table["A"], *(row for row in table["examples"] if row["law"] == "A")]
+    rows = [row for row in rows if row["load"] != "none" and row.get("note") != SEVERAL]
+    assert len(rows) >= 20
+    for row in rows:
+        cell = fm.response(reference_system(row), row["r"], 1.0)
+        period = row["period"]
+        assert float(cell.period) == period
+        assert ends(cell) == pytest.approx((*row["x_min"], *row["x_max"]), abs=1e-10)
+        stops, crossings = (
+            np.nan_to_num(np.atleast_1d(cell[name])) for name in ("stops_per_cycle", "segment_crossings")
+        )
+        assert (stops * period).tolist() == row["stops"]
+        laws = ["law" in one for one in row["contacts"]]
+        assert (crossings * period)[laws].tolist() == np.array(row["break_point_crossings"])[laws].tolist()
+        assert np.atleast_1d(cell.work_friction) * period == pytest.approx(row["work"], abs=1e-10)
+        assert np.atleast_1d(cell.stuck_fraction) == pytest.approx(row["stuck_fraction"], abs=1e-7)
+        assert float(cell.multiplier) == pytest.approx(row["multiplier"], abs=1e-10)

@@ -28,9 +28,9 @@ stop_counts    borders between numbers of stops per cycle, as exact curves
 files          configurations; output files, reading, writing; summaries in words
 probabilities  shares of the regimes over many samples of an uncertain structure
 design         which friction to choose: least peak, within a limit, without stops, stuck, margins
-stores         maps written block by block into a zarr store, by this process or by workers
 identify       measured data: tables, fits, estimates with their errors
 motions        motions in time under records: earthquakes, pulses, run-ups, random loads
+stores         maps and spectra, written block by block into zarr stores, here or by workers
 examples       synthetic measurements with known true values
 pictures       pictures of maps, curves, motions and fits; colours of the regimes
 plot           the functions `plot_...`, and the choice of the picture for a file

@@ -383,8 +383,10 @@ def build_parser() -> argparse.ArgumentParser:
         "its natural period and friction; write NetCDF."
     )
     sub = command("spectrum", "friction response spectra under records", text)
-    _takes_config(sub, "CONFIG", "configuration with tables [record] and [spectrum]", "spectrum.damping=0.05")
+    what = "configuration with tables [record] and [spectrum]"
+    _takes_config(sub, "CONFIG", what, "spectrum.damping=0.05", out="OUT.nc|OUT.zarr")
     _takes_threads(sub)
+    _takes_workers(sub)
     _takes_files(command)
     _takes_beginnings(command)
     return parser

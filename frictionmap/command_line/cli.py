@@ -32,7 +32,9 @@ if TYPE_CHECKING:
     from ..files.config import Config
     from ..files.places import Output
     from ..motions.configuration import Task
+    from ..stores.contents import Contents
     from ..stores.run import Fill
+    from ..stores.store import Store
     from .progress import Progress
 
 
@@ -182,7 +184,7 @@ def _compute(options: Options) -> None:
 
 
 def _is_store(options: Options) -> bool:
-    """Whether a map goes into a store, block by block."""
+    """Whether a map or spectra go into a store, block by block."""
     stored = options.output is not None and options.output.suffix == ".zarr"
     if not stored and (options.workers or options.scheduler):
         raise InputError("cannot use --workers or --scheduler: they compute stores only; give -o OUT.zarr")
@@ -197,19 +199,18 @@ def _refuse_ending(options: Options) -> None:
     if path is None or path.suffix.lower() in _NETCDF or path == options.config:
         return
     if path.suffix == ".zarr":
-        raise InputError(f"cannot write {path}: only `map` can write a .zarr store; use another -o")
-    raise InputError(f"-o must end in {'.nc or .zarr' if options.command == 'map' else '.nc'}; got {path}")
+        raise InputError(
+            f"cannot write {path}: only `map` and `spectrum` can write a .zarr store; use another -o"
+        )
+    endings = ".nc or .zarr" if options.command in ("map", "spectrum") else ".nc"
+    raise InputError(f"-o must end in {endings}; got {path}")
 
 
 def _store(options: Options) -> None:
     """Compute a map into a store, or resume one."""
-    from .._kernels.compiler.notices import listening
     from ..files.config import load_config
     from ..files.studies import describe_cells
-    from ..stores.cuts import cut_by_cost
-    from ..stores.run import fill_store
     from ..stores.study import study_of
-    from .progress import Progress
 
     config = load_config(options.config, options.overrides, lambda *_: None)  # a block is all that is held
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
@@ -219,13 +220,23 @@ def _store(options: Options) -> None:
             "use -o with a name that ends in .nc"
         )
     study = study_of(config.system, config.variations, axes, config.solver, config.units)
-    find_cut = functools.partial(cut_by_cost, workers=options.workers or 0, threads=options.threads)
-    with Progress(f"map of {study.cells:,} cells", options.quiet) as progress, listening(progress.compiling):
-        fill = _fill(options, progress)
-        store = fill_store(options.output, study, config.title, fill, options.overwrite, progress, find_cut)
+    store = _fill_store(options, study, config.title, f"map of {study.cells:,} cells")
     if not options.quiet:
         first, *others = describe_cells(store.path)
         _print("\n  ".join((f"{first}; wrote {options.output}", *others)))
+
+
+def _fill_store(options: Options, contents: "Contents", title: str, what: str) -> "Store":
+    """Compute contents into a store, or its missing blocks."""
+    from .._kernels.compiler.notices import listening
+    from ..stores.cuts import cut_by_cost
+    from ..stores.run import fill_store
+    from .progress import Progress
+
+    find_cut = functools.partial(cut_by_cost, workers=options.workers or 0, threads=options.threads)
+    with Progress(what, options.quiet) as progress, listening(progress.compiling):
+        fill = _fill(options, progress)
+        return fill_store(options.output, contents, title, fill, options.overwrite, progress, find_cut)
 
 
 def _fill(options: Options, progress: "Progress") -> "Fill":
@@ -356,10 +367,22 @@ def _history(options: Options) -> None:
 
 def _spectrum(options: Options) -> None:
     """Compute the friction response spectra of a configuration."""
+    from ..files.motions import describe_motions
+    from ..files.reading import read
     from ..motions.configuration import load_spectrum
+    from ..stores.spectra import spectra_of
 
-    task = load_spectrum(options.config, options.overrides)
-    _follow_records(options, task, f"spectra of {task.motions:,} motions")
+    in_store = _is_store(options)
+    task, what = load_spectrum(options.config, options.overrides), "spectra of {:,} motions"
+    if not in_store:
+        _follow_records(options, task, what.format(task.motions))
+    elif task.asked is not None:
+        spectra = spectra_of(task.asked(), task.wanted, task.text)
+        store = _fill_store(options, spectra, task.title, what.format(spectra.cells))
+        if not options.quiet:
+            _print(
+                "\n  ".join((f"{task.title}; wrote {options.output}", *describe_motions(read(store.path))))
+            )
 
 
 def _follow_records(options: Options, task: "Task", what: str) -> None:

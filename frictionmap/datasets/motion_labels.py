@@ -16,7 +16,11 @@ STATUSES = (
     regimes.Code(4, "record_too_short", "it ended before all contacts were at rest permanently"),
     regimes.Code(5, "undetermined", "contacts close a loop in a common stop, and their forces are not "
                  "determined"),
+    regimes.Code(6, "not_computed", "of a block of a store that is not computed yet"),
 )  # fmt: skip
+
+#: Status in cells of a store that are not computed.
+NOT_COMPUTED = STATUSES[-1].value
 
 _KINDS = (
     regimes.Code(-1, "none", "no event: there are fewer than in other motions"),

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..datasets.labels import attributes
-from ..datasets.motion_labels import CELL, OF_CONTACTS, STATUSES, motion_labels, si_name
+from ..datasets.motion_labels import CELL, NOT_COMPUTED, OF_CONTACTS, STATUSES, motion_labels, si_name
 from ..datasets.schema import checked_values
 from ..errors import InputError
 
@@ -93,9 +93,10 @@ def _summary(one: xr.Dataset) -> str:
 
 
 def _ranges(ds: xr.Dataset) -> Iterator[str]:
-    """Least, median and largest value of every variable."""
+    """Least, median and largest value of every variable, where it is computed."""
+    done = ds["status"] != NOT_COMPUTED
     for name, variable in ds.data_vars.items():
-        values = variable.values[np.isfinite(variable.values)]
+        values = variable.values[np.isfinite(variable.values) & done.transpose(*variable.dims).values]
         if name == "status" or not values.size:
             continue
         unit = str(variable.attrs.get("units", "1")).replace(" s-2", "/s2")
@@ -146,13 +147,14 @@ def _rows(one: xr.Dataset) -> Iterator[tuple[str, str]]:
 
 
 def table_of(ds: xr.Dataset) -> Any:
-    """Data frame: of one motion a row for every time, of several a row for every motion."""
+    """Data frame: of one motion a row for every time, of several, and of spectra, a row for every motion."""
     single = all(ds.sizes.get(dim, 1) == 1 for dim in CELL)
     if single and "time" in ds.dims:
         one = ds.squeeze([dim for dim in CELL if dim in ds.dims], drop=True)
         names = [name for name in one.data_vars if "time" in one[name].dims]
     else:
-        one, names = ds, [name for name in ds.data_vars if not set(ds[name].dims) - {*CELL, "dof", "contact"}]
+        axes = {*CELL, "period", "dof", "contact"}
+        one, names = ds, [name for name in ds.data_vars if not set(ds[name].dims) - axes]
     columns = {}
     for name in names:
         parts = [dim for dim in ("dof", "contact") if dim in one[name].dims]

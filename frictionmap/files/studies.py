@@ -10,7 +10,7 @@ import xarray as xr
 
 from .. import regimes
 from ..datasets.labels import CELL, CELL_VARIABLES, COORDINATES, LABELS, MARKS
-from ..datasets.schema import check_structure, in_brackets
+from ..datasets.schema import check_structure, in_brackets, is_own, kind
 from ..errors import InputError, naming
 from .reading import opened
 from .slices import further_axes, natural
@@ -21,10 +21,10 @@ _AT_ONCE = 1 << 20
 
 
 def is_study(path: Path) -> bool:
-    """Whether a file is a store or has further axes."""
+    """Whether a file is a store of maps or has further axes."""
     with opened(path) as ds, naming(f"file {path}"):
         check_structure(ds, in_parts=True)
-        return MARKS in ds or bool(further_axes(ds))
+        return not is_own(kind(ds)) and (MARKS in ds or bool(further_axes(ds)))
 
 
 def describe_study(path: Path) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -17,8 +17,10 @@ from ..units.quantities import quantities
 from ..units.scales import Units
 from .dataset import history
 from .record import Record
-from .spectra import spectrum
+from .spectra import VARIABLES, Asked, checked_spectra, spectrum
 from .table import records_of
+
+T = TypeVar("T")
 
 #: Keys of [record] that say how motions are followed, not what the records are.
 _OF_MOTIONS = ("scale", "after")
@@ -34,6 +36,9 @@ class Task:
     files: tuple[Path, ...]
     motions: int  # how many
     ask: Callable[..., xr.Dataset]
+    #: of spectra: the oscillators, for a store, and the names of the wanted variables
+    asked: Callable[[], Asked] | None = None
+    wanted: tuple[str, ...] | None = None
 
 
 def _records(tree: Mapping[str, Any], path: Path) -> tuple[tuple[Record, ...], tuple[Path, ...]]:
@@ -119,10 +124,27 @@ def load_spectrum(path: str | Path, overrides: Sequence[str] = ()) -> Task:
         )
     given |= {"scale": record["scale"]} if "scale" in record else {}
     given |= _system_values(tree, path, given)
-    wanted = given.pop("quantities", None)
-    ask = partial(_ask_spectrum, records, given, wanted)
+    wanted = _names(given.pop("quantities", None))
+    ask = partial(_spectra, spectrum, records, given)
     count = len(records) * _count(*(given.get(name) for name in ("scale", "mu", "period", "friction")))
-    return Task(title, path.stem, text, (path, *files), count, ask)
+    return Task(
+        title, path.stem, text, (path, *files), count, partial(_chosen, ask, wanted),
+        partial(_spectra, checked_spectra, records, given), wanted,
+    )  # fmt: skip
+
+
+def _names(wanted: Sequence[str] | None) -> tuple[str, ...] | None:
+    """The variables that are wanted, with their status; None: all."""
+    if wanted is None:
+        return None
+    for name in wanted:
+        checks.choice(name, "spectrum.quantities", tuple(VARIABLES))
+    return tuple(dict.fromkeys((*wanted, "status")))
+
+
+def _chosen(ask: Callable[..., xr.Dataset], wanted: tuple[str, ...] | None, **options: Any) -> xr.Dataset:
+    ds = ask(**options)
+    return ds if wanted is None else ds[list(wanted)]
 
 
 def _system_values(tree: Mapping[str, Any], path: Path, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -181,22 +203,17 @@ def _periods(given: Any) -> Any:
     return found
 
 
-def _ask_spectrum(
-    records: tuple[Record, ...], given: Mapping[str, Any], wanted: Sequence[str] | None, **options: Any
-) -> xr.Dataset:
-    """Compute the spectra; errors name keys of the tables."""
+def _spectra(
+    function: Callable[..., T], records: tuple[Record, ...], given: Mapping[str, Any], **options: Any
+) -> T:
+    """Ask a function about spectra; errors name keys of the tables."""
     arguments = dict(given)
     period, friction = arguments.pop("period"), arguments.pop("friction")
     try:
-        ds = spectrum(records, period, friction, **arguments, **options)
+        return function(records, period, friction, **arguments, **options)
     except InputError as error:
         where = error.where.partition("[")[0]
         raise (within("spectrum", error) if where in given else error) from None
-    if wanted is None:
-        return ds
-    for name in wanted:
-        checks.choice(name, "spectrum.quantities", tuple(map(str, ds.data_vars)))
-    return ds[[*wanted, *(["status"] if "status" not in wanted else [])]]
 
 
 def _ask(

@@ -30,18 +30,8 @@ def _system(grid: Grid, stiffness: float) -> System:
     return System(damping_ratios=grid.damping, contacts=[contact], **moved)  # type: ignore[arg-type]
 
 
-def follow_elastic(
-    grid: Grid, stiffness: float, size: list[float], threads: int, progress: Progress | None,
-    watch: Watch | None,
-) -> np.ndarray:  # fmt: skip
-    """What became of all oscillators, (variables, *grid.shape).
-
-    Parameters
-    ----------
-    grid : the oscillators
-    stiffness : of the contact, over that of the mass's spring
-    size : factors of the records in SI units
-    threads, progress, watch : as in `spectrum`
+def refuse_elastic(grid: Grid) -> None:
+    """Refuse what oscillators whose contact has a spring cannot have.
 
     Raises
     ------
@@ -57,6 +47,21 @@ def follow_elastic(
         raise InputError(
             "period", "must be finite with contact_stiffness, a share of the stiffness of the spring; got inf"
         )
+
+
+def follow_elastic(
+    grid: Grid, stiffness: float, size: list[float], threads: int, progress: Progress | None,
+    watch: Watch | None,
+) -> np.ndarray:  # fmt: skip
+    """What became of all oscillators, (variables, *grid.shape).
+
+    Parameters
+    ----------
+    grid : the oscillators
+    stiffness : of the contact, over that of the mass's spring
+    size : factors of the records in SI units
+    threads, progress, watch : as in `spectrum`
+    """
     system = _system(grid, stiffness)
     found = np.zeros((len(Responses._fields), *grid.shape))
     for k, period in enumerate(grid.period):

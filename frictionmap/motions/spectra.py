@@ -1,7 +1,7 @@
 """`spectrum`: friction response spectra, the peaks of one mass with friction over its natural period."""
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -16,7 +16,7 @@ from ..jobs import Progress, Watch, run_counted
 from ..units.quantities import quantities
 from ..units.table import UNITS
 from ..version import __version__
-from .elastic_spectra import follow_elastic
+from .elastic_spectra import follow_elastic, refuse_elastic
 from .lanes import Driven, Grid, Oscillators, Responses, driven, follow, in_lanes, parts_of
 from .origins import record_attributes
 from .pieces import Pieces, derivative
@@ -99,10 +99,6 @@ def _periods(given: Any) -> np.ndarray:
     return found
 
 
-def _scales(given: Any) -> np.ndarray:
-    return checks.axis(given, "scale", least=-np.inf)
-
-
 def spectrum(
     records: Record | Sequence[Record],
     period: ArrayLike,
@@ -166,25 +162,58 @@ def spectrum(
     >>> float(spectrum(push, float("inf"), 0.3).amplitude.squeeze().round(12))
     4.666666666667
     """
-    listed = _records(records)
-    grid = Grid(
-        listed, _scales(scale), checks.axis(mu, "mu", least=1.0), _periods(period),
-        _friction(friction, listed), checks.number(damping, "damping", least=0.0),
-    )  # fmt: skip
-    checks.cells(grid.mu.size, grid.period.size, grid.friction.size, points=len(listed) * grid.scale.size)
-    if contact_stiffness is None:
-        found = _followed(grid, checks.threads(threads), progress, watch)
-    else:
-        stiffness = checks.number(contact_stiffness, "contact_stiffness", above=0.0)
-        sizes = [_size(record) for record in listed]
-        found = follow_elastic(grid, stiffness, sizes, checks.threads(threads), progress, watch)
-    ds = _labelled(grid, found)
+    wanted = checked_spectra(
+        records, period, friction, mu=mu, damping=damping, contact_stiffness=contact_stiffness, scale=scale
+    )
+    count, scales, n_mu, n_period, n_beta = wanted.grid.shape
+    checks.cells(n_mu, n_period, n_beta, points=count * scales)
+    ds = computed(wanted, checks.threads(threads), progress, watch)
     return ds.assign_attrs({
         "Conventions": "CF-1.11", "title": "Friction response spectra",
         "source": f"frictionmap {__version__}",
         "references": REFERENCES, "history": f"{now()} frictionmap.spectrum",
-        **record_attributes(None, listed),
+        **record_attributes(None, wanted.grid.records),
     })  # fmt: skip
+
+
+class Asked(NamedTuple):
+    """The oscillators of spectra, and the stiffness of their contact over that of the spring; None: rigid."""
+
+    grid: Grid
+    stiffness: float | None
+
+
+def checked_spectra(
+    records: Any,
+    period: ArrayLike,
+    friction: Any,
+    *,
+    mu: ArrayLike = 1.0,
+    damping: float = 0.0,
+    contact_stiffness: float | None = None,
+    scale: ArrayLike = 1.0,
+) -> Asked:
+    """The arguments of `spectrum`, checked."""
+    listed = _records(records)
+    grid = Grid(
+        listed, checks.axis(scale, "scale", least=-np.inf), checks.axis(mu, "mu", least=1.0),
+        _periods(period), _friction(friction, listed), checks.number(damping, "damping", least=0.0),
+    )  # fmt: skip
+    if contact_stiffness is None:
+        return Asked(grid, None)
+    refuse_elastic(grid)
+    return Asked(grid, checks.number(contact_stiffness, "contact_stiffness", above=0.0))
+
+
+def computed(
+    wanted: Asked, threads: int, progress: Progress | None = None, watch: Watch | None = None
+) -> xr.Dataset:
+    """Variables and axes of spectra."""
+    grid = wanted.grid
+    if wanted.stiffness is None:
+        return _labelled(grid, _followed(grid, threads, progress, watch))
+    sizes = [_size(record) for record in grid.records]
+    return _labelled(grid, follow_elastic(grid, wanted.stiffness, sizes, threads, progress, watch))
 
 
 def _oscillators(grid: Grid) -> tuple[Oscillators, np.ndarray]:

@@ -1,11 +1,10 @@
-"""Division of a study into blocks by computing time, so that workers share them and a stop loses few.
+"""Division of contents into blocks by computing time, so that workers share them and a stop loses few.
 
-The cost is counted, not timed (`seconds_of_cells`): a study is cut alike whenever it is begun, for any number
-of workers up to `_WORKERS`.  A store keeps the cut that it was made with.
+The cost is counted, not timed (`cell_seconds`): contents are cut alike whenever they are begun, for any
+number of workers up to `_WORKERS`.  A store keeps the cut that it was made with.
 """
 
-from ..steady.cost import seconds_of_cells
-from .study import Cut, Study
+from .contents import Contents, Cut
 
 #: Seconds of a block on average; the most expensive ones, at low frequency, take about three times as long.
 _SECONDS = 10.0
@@ -20,13 +19,12 @@ _PER_WORKER = 4
 _WORKERS = 16
 
 
-def cut_by_cost(study: Study, workers: int = 0, threads: int | None = None) -> Cut:
-    """Cut a study into blocks of about ten seconds, and at least four for every worker.
+def cut_by_cost(contents: Contents, workers: int = 0, threads: int | None = None) -> Cut:
+    """Cut contents into blocks of about ten seconds, and at least four for every worker.
 
     workers : for which a new store is made, if that is known
-    threads : of this process, which looks at some cells of the study
+    threads : of this process, which may look at some cells
     """
-    axes = {"mu": study.mu, "r": study.r, "beta": study.beta}
-    of_cell = seconds_of_cells(study.system, axes, study.solver, threads)
-    share = of_cell * study.cells / (_PER_WORKER * max(workers, _WORKERS))
-    return study.cut_at(int(min(_SECONDS, max(_FEWEST_SECONDS, share)) / of_cell))
+    of_cell = contents.cell_seconds(threads)
+    share = of_cell * contents.cells / (_PER_WORKER * max(workers, _WORKERS))
+    return contents.cut_at(int(min(_SECONDS, max(_FEWEST_SECONDS, share)) / of_cell))

@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,14 +9,11 @@ import numpy as np
 from ..errors import InputError
 from ..files.places import claimed_folder
 from ..jobs import Progress
+from .contents import Batch, Contents, FindCut, with_cut
 from .store import Store, check_same, cut_of, make_store, remove_strays
-from .study import Batch, Cut, Study
 
 #: Computes and writes batches of blocks, and yields each when it is done.
 Fill = Callable[[Store, Iterable[Batch]], Iterator[Batch]]
-
-#: Finds where the cells of a study are cut.
-FindCut = Callable[[Study], Cut]
 
 
 def in_this_process(threads: int | None) -> Fill:
@@ -33,7 +29,7 @@ def in_this_process(threads: int | None) -> Fill:
 
 def fill_store(
     path: Path,
-    study: Study,
+    study: Contents,
     title: str,
     fill: Fill,
     overwrite: bool = False,
@@ -57,10 +53,10 @@ def fill_store(
     with claimed_folder(path) as claim:
         if path.exists() and not overwrite:
             check_same(path, study, title)
-            study = replace(study, cut=cut_of(path))
+            study = with_cut(study, cut_of(path))
         else:
             _check_replaceable(path)
-            study = study if find_cut is None else replace(study, cut=find_cut(study))
+            study = study if find_cut is None else with_cut(study, find_cut(study))
             make_store(path, study, title)
         remove_strays(path)
         store = Store(path, study)

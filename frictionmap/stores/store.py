@@ -6,8 +6,7 @@ import hashlib
 import secrets
 import shutil
 import threading
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,21 +16,16 @@ import numpy as np
 from .. import checks
 from .._kernels.compiler.notices import warn_once
 from ..datasets.labels import REFERENCES
-from ..datasets.physical import scale_attributes
-from ..datasets.provenance import configuration, excitation_of
 from ..errors import InputError
 from ..files.checksums import RECORD, changed_description, chunk_is_damaged, chunks_of, record_of
-from ..files.config import Config, config_of, parse
-from ..model.matrices import Matrices
+from ..files.config import parse
 from ..version import __version__, state
-from .layout import MARKS, Array, arrays_of, chunk, coordinates_of, plain, region
-from .study import Batch, Cut, Study, study_of
+from .contents import Batch, Contents, Cut, with_cut
+from .kinds import contents_of
+from .layout import MARKS, Array, arrays_of, chunk, plain, region
 
 if TYPE_CHECKING:
     import zarr
-
-#: The group of the matrices of a structure that has any.
-_MATRICES = "matrices"
 
 #: Names of files that are being written.
 _PARTIAL = "*.partial"
@@ -53,9 +47,9 @@ def _zarr() -> Any:
 
 
 class Store:
-    """A study's store."""
+    """A store and its contents: a study of maps, or spectra."""
 
-    def __init__(self, path: Path, study: Study) -> None:
+    def __init__(self, path: Path, study: Contents) -> None:
         self.path = path
         self.study = study
 
@@ -65,11 +59,10 @@ class Store:
 
     @property
     def digest(self) -> str:
-        """Hash of configuration and matrices, by which stores are distinguished."""
-        text = str(self._group.attrs["config"])
-        matrices = _matrices(self.study.system.matrices)
-        content = [text.encode(), *(array.tobytes() for array in matrices.values())]
-        return hashlib.sha256(b"".join(content)).hexdigest()
+        """Hash of description and data, by which stores are distinguished."""
+        content = [array.tobytes() for _, array in self.study.arrays()] if self.study.hashes_data else []
+        text = str(self._group.attrs[self.study.described_in])
+        return hashlib.sha256(b"".join([text.encode(), *content])).hexdigest()
 
     def marks(self) -> np.ndarray:
         """Blocks marked as done, bool of `study.shape`.
@@ -114,7 +107,7 @@ class Store:
 
     def mend_axes(self) -> None:
         """Write the axes again whose chunks are damaged or missing."""
-        for name, variable in coordinates_of(self.study, self.study.sample).items():
+        for name, variable in self.study.coordinates().items():
             key = self._group[name].metadata.encode_chunk_key((0,) * variable.ndim)
             file = self.path / name / key
             damaged = file.exists() and chunk_is_damaged(file)
@@ -137,11 +130,11 @@ class Store:
 
     @cached_property
     def _arrays(self) -> dict[str, Array]:
-        return arrays_of(self.study, self.study.sample)
+        return arrays_of(self.study)
 
 
-def make_store(path: Path, study: Study, title: str) -> None:
-    """Make the store of a study without any block; it appears in one step.
+def make_store(path: Path, contents: Contents, title: str) -> None:
+    """Make a store without any block; it appears in one step.
 
     An existing store is set aside in one step as well, to be removed.
 
@@ -150,36 +143,20 @@ def make_store(path: Path, study: Study, title: str) -> None:
     OSError
         It cannot be written.
     """
-    zarr = _zarr()
     away = _away(path)
     try:
-        sample = study.sample
-        text = _configuration(study, title)
         attributes = {
             "Conventions": "CF-1.11", "title": title, "source": _SOURCE, "references": REFERENCES,
-            "system": study.variations.describe(), "excitation": excitation_of(study.system), "config": text,
-            "state": state(), **study.system.costs(study.r), **study.reduction_check,
-            **scale_attributes(study.scales),
+            "state": state(), "contents": contents.kind, contents.described_in: contents.description(title),
+            **contents.attributes(),
         }  # fmt: skip
-        group = zarr.create_group(away, attributes=attributes)
-        for name, array in arrays_of(study, sample).items():
+        group = _zarr().create_group(away, attributes=attributes)
+        for name, array in arrays_of(contents).items():
             _make_array(group, name, array)
-        for name, variable in coordinates_of(study, sample).items():
-            values = np.asarray(variable.values)
-            dims = tuple(map(str, variable.dims))
-            fill = values.dtype.type(0)
-            like = Array(dims, values.shape, values.shape, values.dtype, fill, plain(variable.attrs))
-            _make_array(group, name, like)[...] = values
-        for name, matrix in _matrices(study.system.matrices).items():
-            like = Array(
-                ("row", "column")[: matrix.ndim],
-                matrix.shape,
-                matrix.shape,
-                matrix.dtype,
-                matrix.dtype.type(0),
-                {},
-            )
-            _make_array(group, f"{_MATRICES}/{name}", like)[...] = matrix
+        for name, variable in contents.coordinates().items():
+            _put_array(group, name, np.asarray(variable.values), variable.dims, plain(variable.attrs))
+        for name, values in contents.arrays():
+            _put_array(group, name, values, ("row", "column")[: values.ndim], {})
         group.attrs[RECORD] = record_of(away, attributes)
         if path.exists():
             path.rename(_away(path))
@@ -192,6 +169,15 @@ def make_store(path: Path, study: Study, title: str) -> None:
         shutil.rmtree(away, ignore_errors=True)
 
 
+def _put_array(
+    group: "zarr.Group", name: str, values: np.ndarray, dims: Iterable[object], attributes: Mapping[str, Any]
+) -> None:
+    """Write an array as one chunk."""
+    fill = values.dtype.type(0)
+    like = Array(tuple(map(str, dims)), values.shape, values.shape, values.dtype, fill, attributes)
+    _make_array(group, name, like)[...] = values
+
+
 def _make_array(group: "zarr.Group", name: str, array: Array) -> "zarr.Array":
     from zarr.codecs import BloscCodec, Crc32cCodec
 
@@ -202,34 +188,16 @@ def _make_array(group: "zarr.Group", name: str, array: Array) -> "zarr.Array":
     )  # fmt: skip
 
 
-def _matrices(matrices: object) -> dict[str, np.ndarray]:
-    """Matrices of a structure by their names; none of a chain."""
-    if not isinstance(matrices, Matrices):
-        return {}
-    return matrices.arrays
-
-
-def _configuration(study: Study, title: str) -> str:
-    """Configuration that reproduces the study; matrices are stored as arrays."""
-    grid = {"r": study.r, "beta": study.beta, "mu": study.mu}
-    further = study.variations.described or None
-    return configuration(
-        title, study.system, grid, study.solver, study=further, matrices=_MATRICES, units=study.units
-    )
-
-
 def opened(path: Path) -> Store:
-    """The store at a path, with its study.
+    """The store at a path, with its contents.
 
     Raises
     ------
     InputError
         There is no store of this version.
     """
-    config = _config(path)
-    axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
-    study = study_of(config.system, config.variations, axes, config.solver, config.units)
-    return Store(path, replace(study, cut=cut_of(path)))
+    kind, text, arrays = _stored(path)
+    return Store(path, with_cut(kind.stored(text, arrays), cut_of(path)))
 
 
 def cut_of(path: Path) -> Cut:
@@ -244,7 +212,7 @@ def cut_of(path: Path) -> Cut:
     try:
         group = _zarr().open_group(path, mode="r", use_consolidated=False)
         together = group[name].chunks
-        name = "status"  # which every store has, over mu, r and beta
+        name = "status"  # which every store has, the rows as its last axis but one
         return Cut(group[name].chunks[-2], together)
     except OSError:
         raise
@@ -259,8 +227,30 @@ def _damaged(path: Path, name: str, error: Exception) -> InputError:
     )
 
 
-def _config(path: Path) -> Config:
-    """Read the configuration of a store; refuse other folders, and stores of another state of the program."""
+class _Arrays(Mapping[str, np.ndarray]):
+    """Data of a store beside its variables, read when used."""
+
+    def __init__(self, path: Path, found: Mapping[str, "zarr.Array"]) -> None:
+        self._path, self._found = path, found
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        try:
+            return np.asarray(self._found[name][...])
+        except ValueError as error:
+            raise _damaged(self._path, name, error) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._found)
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+
+def _stored(path: Path) -> tuple[type[Contents], str, Mapping[str, np.ndarray]]:
+    """Kind of the contents of a store, their description, and data beside it.
+
+    Other folders are refused, and stores of another state of the program.
+    """
     zarr = _zarr()
     source: object = "something else"
     try:
@@ -268,8 +258,9 @@ def _config(path: Path) -> Config:
         source = group.attrs.get("source", source)
         if source == _SOURCE:
             _check_described(path, group.attrs)
-            found = {name: _matrix(path, name, array) for name, array in _arrays_in(group, _MATRICES)}
-            return config_of(str(group.attrs["config"]), {"matrices": found} if found else {})
+            kind = contents_of(str(group.attrs["contents"]))
+            found = {f"{name}/{key}": one for name, part in group.groups() for key, one in part.arrays()}
+            return kind, str(group.attrs[kind.described_in]), _Arrays(path, found)
     except InputError:
         raise
     except PermissionError as error:
@@ -296,28 +287,17 @@ def _check_described(path: Path, attributes: Mapping[str, Any]) -> None:
         )
 
 
-def _matrix(path: Path, name: str, array: "zarr.Array") -> np.ndarray:
-    """Read a matrix of a store."""
-    try:
-        return np.asarray(array[...])
-    except ValueError as error:
-        raise _damaged(path, f"{_MATRICES}/{name}", error) from None
-
-
-def _arrays_in(group: "zarr.Group", name: str) -> list[tuple[str, "zarr.Array"]]:
-    return list(group[name].arrays()) if name in group else []
-
-
-def check_same(path: Path, study: Study, title: str) -> None:
-    """Refuse a store of another study; the message names the differing keys."""
-    config = _config(path)
-    there = _flat(parse(config.text))
-    here = _flat(parse(_configuration(study, title)))
+def check_same(path: Path, contents: Contents, title: str) -> None:
+    """Refuse a store of something else; the message names the differing keys."""
+    kind, text, arrays = _stored(path)
+    if kind is not type(contents):
+        raise InputError(f"cannot resume {path}: it holds a {kind.kind}; use --overwrite or another -o")
+    there, here = _flat(parse(text)), _flat(parse(contents.description(title)))
     there.pop("title", None)
     here.pop("title", None)
     differing = [key for key in {**there, **here} if there.get(key) != here.get(key)]
-    if config.system.matrices != study.system.matrices and not differing:
-        differing = ["system.matrices"]
+    if not differing and (data := contents.differing_data(arrays)):
+        differing = [data]
     if differing:
         words = "; ".join(
             f"{key}: {checks.one_line(there.get(key))} there, {checks.one_line(here.get(key))} now"

@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Any
 from .._kernels.compiler.folders import folders
 from ..errors import InputError
 from ..version import __version__, state
+from .contents import Batch
 from .run import Fill
 from .store import Store, opened
-from .study import Batch
 
 if TYPE_CHECKING:
     from distributed import Client, Future, LocalCluster

@@ -475,11 +475,11 @@ def test_a_store_that_was_replaced_meanwhile(tmp_path):
 
 def test_workers_that_come_later_have_work(tmp_path, monkeypatch):
     distributed = pytest.importorskip("distributed")
-    from frictionmap.stores import store
+    from frictionmap.stores import study as study_module
     from frictionmap.stores.workers import NO_DASHBOARD, _on
 
     path, asked = tmp_path / "map.zarr", study(ONE, 40)
-    monkeypatch.setattr(store, "study_of", lambda *given: replace(study_of(*given), block_cells=40))
+    monkeypatch.setattr(study_module, "study_of", lambda *given: replace(study_of(*given), block_cells=40))
     fill_store(path, asked, "map", lambda store, batches: iter(()))
     submitted = []
     with (

@@ -19,6 +19,9 @@ _FIRST, _SAMPLES_PER_EVENT = 256, 4
 #: Intervals after a record that a motion is followed to its rest.
 _MOST_AFTER = 200_000
 
+#: Distinct lengths of intervals that have tables, at most; else all intervals are followed by their series.
+_MOST_LENGTHS = 64
+
 #: Rounding error of a sum, relative to its terms.
 _ROUNDING = 2.0**-50
 
@@ -69,7 +72,6 @@ class Motions:
         self.problem = problem_of(structure, drive)
         self.held = held(self.problem)
         self.watched = watched_of(structure, self.problem, drive)
-        self._even = len(np.unique(drive.steps)) == 1  # else tables hold for one interval
 
     def _limits(self, asked: Asked, events: bool) -> tuple[np.ndarray, np.ndarray]:
         """Lengths of the intervals, and the limits of `follow_record`."""
@@ -104,13 +106,15 @@ class Motions:
         expected = _FIRST + steps.size // _SAMPLES_PER_EVENT
         room = np.array([expected, samples and samples + 2 * expected * int(limits[3]) + _FIRST])
         rounding = self._rounding(static, scale)
+        lengths = len(np.unique(steps))
+        lengths = lengths if lengths <= _MOST_LENGTHS else 0
         course = Course(np.ascontiguousarray(terms), steps, self.drive.times, self.drive.jumps)
         while True:
             masses = np.empty((0, self.problem.squares.size))
             record = make_record(self.problem, masses, 0)
             kept = make_kept(self.problem, self.watched.weights, rounding, record, room)
             one = self.problem._replace(rates=np.ones(1))  # room for the channels of one interval
-            memory = make_memory(one, self.watched.weights.shape[0], self._even)
+            memory = make_memory(one, self.watched.weights.shape[0], terms.shape[2], lengths)
             status, done, asleep = follow_record(
                 self.problem, friction, memory, course, start, asked.start.sense, kept, bed, limits
             )

@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import InputError
 from ..model.general import ContactSystem
 from ..model.system import System
-from .pieces import SAME, Pieces, derivative, extremes, integral, on_times
+from .pieces import SAME, Pieces, derivative, extremes, integral, on_times, padded, scaled
 from .record import Record
 
 
@@ -26,7 +26,7 @@ class Drive(NamedTuple):
 
     times: np.ndarray  # (K + 1,) the samples; the last one is the end of the record
     steps: np.ndarray  # (K + 1,) lengths of the intervals, the last one of those after the record
-    terms: np.ndarray  # (K + 1, D, PIECE_TERMS) polynomials; the last ones are those after the record
+    terms: np.ndarray  # (K + 1, D, terms) polynomials; the last ones are those after the record
     jumps: np.ndarray  # (K + 1,) bool: whether a channel jumps where an interval begins
     push: np.ndarray  # (n, D)
     base: np.ndarray  # (N, D)
@@ -99,7 +99,7 @@ def _normal_loads(general: ContactSystem, time: float) -> list[Channel]:
     for j, group in enumerate(general.groups):
         record = group.first.normal_record
         if record is not None:
-            pieces = _scaled(record.pieces, Scale(time, 1.0))
+            pieces = scaled(record.pieces, time, 1.0)
             least = 1.0 + min(0.0, extremes(pieces)[0])
             if least < 0.0:
                 raise InputError(
@@ -110,10 +110,6 @@ def _normal_loads(general: ContactSystem, time: float) -> list[Channel]:
             n = group.vector.size
             found.append(Channel(pieces, np.zeros(n), np.zeros(general.count), np.eye(general.count)[j]))
     return found
-
-
-def _scaled(pieces: Pieces, scale: Scale) -> Pieces:
-    return Pieces(pieces.times * scale.time, pieces.steps * scale.time, pieces.terms * scale.value)
 
 
 def _common(channels: list[Channel]) -> tuple[np.ndarray, np.ndarray]:
@@ -128,7 +124,7 @@ def _common(channels: list[Channel]) -> tuple[np.ndarray, np.ndarray]:
 def drive_of(system: System, record: Record, scale: Scale) -> Drive:
     """Collect what a record drives in a system."""
     general = system.contact_system
-    pieces = _scaled(record.pieces, scale)
+    pieces = scaled(record.pieces, *scale)
     if record.quantity == "force":
         channels = _force(system, record, general.count, pieces)
     else:
@@ -142,6 +138,8 @@ def drive_of(system: System, record: Record, scale: Scale) -> Drive:
         one.pieces.terms if one.pieces.times is times else on_times(one.pieces, times, steps).terms
         for one in channels
     ]
+    most = max(own.shape[1] for own in terms)
+    terms = [padded(own, most) for own in terms]
     after, step = [], float(steps.max())
     for one, own in zip(channels, terms, strict=True):
         last = np.zeros((1, own.shape[1]))

@@ -80,7 +80,7 @@ def least_median(
     options: dict[str, Any] = {"mu": mu, "units": units, "after": after, "threads": threads}
 
     def peaks(friction: np.ndarray) -> np.ndarray:
-        ds = history(system, records, beta=friction, samples="none", **options)
+        ds = history(system, records, beta=friction, samples="none", beta_hold=False, **options)
         values = abs(ds[quantity].isel(scale=0, mu=0))
         if "dof" in values.dims:
             values = values.sel(dof=system.dofs.number(mass, "mass"))

@@ -98,6 +98,7 @@ def history(
     start: str | Mapping[str, Any] | xr.Dataset = "rest",
     after: str | float = "rest",
     samples: str | int = "all",
+    beta_hold: bool = True,
     threads: int | None = None,
     progress: Progress | None = None,
     watch: Watch | None = None,
@@ -132,6 +133,9 @@ def history(
     samples : "all", int or "none"
         Which samples of the histories are kept: all, every so many, none.  A single motion has both sides of
         all events, too.
+    beta_hold : bool
+        Whether the friction from which nothing moves is found, too: a further motion of every record.  Else
+        it is NaN.
     threads : int, optional
         Number of threads; default: all processors.  The result is equal to the bit for any number.
     progress, watch : callable, optional
@@ -170,7 +174,10 @@ def history(
     refuse_static(structure.system.contact_system, grid.mu)
     asked = Asked(start_of(structure, start), _after(after), _every(samples, grid))
     single = int(np.prod(grid.shape)) == 1
-    found = _follow(structure, grid, scales, asked, single, threads, progress, watch)
+    if not isinstance(beta_hold, bool):
+        raise InputError("beta_hold", f"must be true or false; got {checks.one_line(beta_hold)}")
+    holds = beta_hold and not asked.start.moves
+    found = _follow(structure, grid, scales, asked, (single, holds), threads, progress, watch)
     ds = _labelled(structure, grid, asked, found)
     ds.attrs = {
         "Conventions": "CF-1.11", "title": "Motion in time" if single else "Motions in time",
@@ -219,13 +226,14 @@ class Followed(NamedTuple):
 
     motions: list[Motions]  # of every record
     found: np.ndarray  # of Found, the shape of the grid
-    hold: np.ndarray  # (records, N) largest force in every contact with all held
+    hold: np.ndarray | None  # (records, N) largest force in every contact with all held, where wanted
 
 
 def _follow(
-    structure: Structure, grid: Grid, scales: Scales, asked: Asked, single: bool, threads: int | None,
-    progress: Progress | None, watch: Watch | None,
+    structure: Structure, grid: Grid, scales: Scales, asked: Asked, wanted: tuple[bool, bool],
+    threads: int | None, progress: Progress | None, watch: Watch | None,
 ) -> Followed:  # fmt: skip
+    """Follow all motions; wanted: the states at events, and the forces with all contacts held."""
     general = structure.system.contact_system
     factors = [scale_of(one, scales) for one in grid.records]
     motions = [
@@ -234,6 +242,7 @@ def _follow(
     ]
     each = [asked._replace(after=asked.after and asked.after * factor.time) for factor in factors]
     found = np.empty(grid.shape, dtype=object)
+    single, holds = wanted
     hold = np.empty((len(motions), general.count))
 
     def task(i: int, k: int, m: int, b: int) -> Callable[[], None]:
@@ -251,9 +260,9 @@ def _follow(
         return run
 
     tasks = [task(*index) for index in product(*map(range, grid.shape))]
-    tasks += [hold_task(i) for i in range(len(motions))]
+    tasks += [hold_task(i) for i in range(len(motions)) if holds]
     run_counted([(one, ()) for one in tasks], checks.threads(threads), progress, watch)
-    return Followed(motions, found, hold)
+    return Followed(motions, found, hold if holds else None)
 
 
 def _peaks(structure: Structure, motions: Motions, one: Found) -> dict[str, np.ndarray]:
@@ -383,7 +392,7 @@ def _labelled(structure: Structure, grid: Grid, asked: Asked, followed: Followed
             variables[name] = _variable(name, stacked, contacts)
     variables |= _events([one for _, one in ones], grid.shape)
     hold = np.full(grid.shape[:3], np.nan)
-    if not asked.start.moves:
+    if followed.hold is not None:
         hold = _hold(structure, grid, followed.hold)
     variables["beta_hold"] = xr.Variable(MOTIONS["beta_hold"].dims, hold, attributes(MOTIONS["beta_hold"]))
     return xr.Dataset(variables, coords)

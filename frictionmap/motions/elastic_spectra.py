@@ -10,6 +10,7 @@ from ..model.contact import Contact
 from ..model.system import System
 from .dataset import history
 from .lanes import Grid, Responses
+from .pieces import scaled
 from .record import Record
 
 #: Powers of w that the values of a record are divided by, in time over 1/w and displacements as they are.
@@ -19,8 +20,9 @@ _POWERS = {"force": 2, "acceleration": 2, "velocity": 1, "displacement": 0}
 def _over_w(record: Record, w: float, size: float) -> Record:
     """The record in time over 1/w, without a unit."""
     times = {"dt": record.dt * w} if record.dt is not None else {"time": record.time * w}
-    values = record.values * (size * w ** -_POWERS[record.quantity])
-    return replace(record, values=values, unit=None, **times)
+    factor = size * w ** -_POWERS[record.quantity]
+    series = None if record.series is None else scaled(record.series, w, factor)
+    return replace(record, values=record.values * factor, unit=None, series=series, **times)
 
 
 def _system(grid: Grid, stiffness: float) -> System:
@@ -68,8 +70,8 @@ def follow_elastic(
         w = 2.0 * np.pi / period
         records = [_over_w(one, w, share) for one, share in zip(grid.records, size, strict=True)]
         ds = history(
-            system, records, beta=grid.friction / w**2, scale=grid.scale, samples="none", threads=threads,
-            watch=watch,
+            system, records, beta=grid.friction / w**2, scale=grid.scale, samples="none", beta_hold=False,
+            threads=threads, watch=watch,
         )  # fmt: skip
         own = {"stops": "slips"}
         for i, name in enumerate(Responses._fields):

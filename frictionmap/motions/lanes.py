@@ -6,7 +6,6 @@ from typing import NamedTuple
 import numpy as np
 
 from .._kernels.compiler.vectors import LANES
-from .._kernels.general.problem import PIECE_TERMS
 from .._kernels.history.motion import CREEPING, RESOLVED
 from .._kernels.history.spectrum import follow_lanes, rest_lanes
 from .._kernels.history.spectrum_lanes import (
@@ -102,7 +101,7 @@ def driven(pieces: Pieces, parts: int, base: bool) -> Driven:
 def _shifted(terms: np.ndarray, parts: int) -> np.ndarray:
     """Polynomials over equal parts of the intervals."""
     begin = np.tile(np.arange(parts) / parts, len(terms))
-    return shifted(np.repeat(terms, parts, axis=0), begin) / float(parts) ** np.arange(PIECE_TERMS)
+    return shifted(np.repeat(terms, parts, axis=0), begin) / float(parts) ** np.arange(terms.shape[1])
 
 
 def _block(drive: Driven, first: int, last: int) -> Load:

@@ -1,6 +1,6 @@
 """Polynomials over the intervals of a record: interpolation, derivatives, integrals.
 
-A piece is a polynomial of degree up to 5 in x = (t - t_k)/h_k, which runs from 0 to 1 over interval k.
+A piece is a polynomial in x = (t - t_k)/h_k, which runs from 0 to 1 over interval k.
 """
 
 from typing import NamedTuple
@@ -24,7 +24,7 @@ class Pieces(NamedTuple):
 
     times: np.ndarray  # (K + 1,) ends of the intervals
     steps: np.ndarray  # (K,) their lengths, equal to the bit where they are meant to be
-    terms: np.ndarray  # (K, PIECE_TERMS) coefficients of powers of x
+    terms: np.ndarray  # (K, terms) coefficients of powers of x
 
     @property
     def ends(self) -> np.ndarray:
@@ -37,6 +37,13 @@ def even_step(times: np.ndarray) -> float | None:
     steps = np.diff(times)
     step = float((times[-1] - times[0]) / steps.size)
     return step if np.abs(steps - step).max() <= _EVEN * step else None
+
+
+def levelled(steps: np.ndarray, duration: float) -> np.ndarray:
+    """Steps that differ by no more than the rounding of times up to `duration`, each as the least of them."""
+    values, place = np.unique(steps, return_inverse=True)
+    begins = np.concatenate(([True], np.diff(values) > np.spacing(duration)))
+    return values[begins][np.cumsum(begins) - 1][place]
 
 
 def _filled(columns: list[np.ndarray]) -> np.ndarray:
@@ -68,40 +75,38 @@ def interpolated(times: np.ndarray, steps: np.ndarray, values: np.ndarray, how: 
     return Pieces(times, steps, _filled(list(spline.c[::-1] * scales)))
 
 
-def with_slopes(times: np.ndarray, steps: np.ndarray, values: np.ndarray, slopes: np.ndarray) -> Pieces:
-    """Cubics with the values and the slopes of samples at both ends of each interval.
+def padded(terms: np.ndarray, count: int) -> np.ndarray:
+    """The same polynomials with `count` terms."""
+    return np.pad(terms, ((0, 0), (0, count - terms.shape[1])))
 
-    A smooth function with these samples is at most h^4/384 times its largest fourth derivative away, h the
-    longest interval.
-    """
-    begin, end = slopes[:-1] * steps, slopes[1:] * steps
-    rise = np.diff(values)
-    return Pieces(
-        times, steps, _filled([values[:-1], begin, 3.0 * rise - 2.0 * begin - end, begin + end - 2.0 * rise])
-    )
+
+def scaled(given: Pieces, time: float, value: float) -> Pieces:
+    """The same function with other units of time and values."""
+    return Pieces(given.times * time, given.steps * time, given.terms * value)
 
 
 def derivative(given: Pieces) -> Pieces:
     """Derivative by time."""
     terms = np.zeros_like(given.terms)
-    terms[:, :-1] = given.terms[:, 1:] * np.arange(1.0, PIECE_TERMS) / given.steps[:, np.newaxis]
+    terms[:, :-1] = given.terms[:, 1:] * np.arange(1.0, terms.shape[1]) / given.steps[:, np.newaxis]
     return given._replace(terms=terms)
 
 
 def integral(given: Pieces) -> Pieces:
     """Integral from the beginning."""
-    terms = np.zeros_like(given.terms)
-    terms[:, 1:] = given.terms[:, :-1] / np.arange(1.0, PIECE_TERMS) * given.steps[:, np.newaxis]
+    count = given.terms.shape[1] + bool(given.terms[:, -1].any())
+    terms = np.zeros((len(given.terms), count))
+    terms[:, 1:] = given.terms[:, : count - 1] / np.arange(1.0, count) * given.steps[:, np.newaxis]
     gained = np.cumsum(terms.sum(axis=1, dtype=np.longdouble))
     terms[1:, 0] = gained[:-1]
     return given._replace(terms=terms)
 
 
 def shifted(terms: np.ndarray, begin: np.ndarray) -> np.ndarray:
-    """Coefficients (K, PIECE_TERMS) of the same polynomials from x = begin (K,) on."""
-    found = terms.copy()
-    for i in range(PIECE_TERMS - 1):
-        for n in range(PIECE_TERMS - 2, i - 1, -1):
+    """Coefficients (K, terms) of the same polynomials from x = begin (K,) on."""
+    found, count = terms.copy(), terms.shape[1]
+    for i in range(count - 1):
+        for n in range(count - 2, i - 1, -1):
             found[:, n] += begin * found[:, n + 1]
     return found
 
@@ -115,19 +120,24 @@ def on_times(given: Pieces, times: np.ndarray, steps: np.ndarray) -> Pieces:
     begin = (times[:-1] - given.times[k]) / given.steps[k]
     share = steps / given.steps[k]
     terms = shifted(given.terms[k], begin)
-    terms *= share[:, np.newaxis] ** np.arange(PIECE_TERMS)
+    terms *= share[:, np.newaxis] ** np.arange(terms.shape[1])
     return Pieces(times, steps, np.where(inside[:, np.newaxis], terms, 0.0))
 
 
 def extremes(given: Pieces) -> tuple[float, float]:
     """Lowest and highest value, between samples too."""
-    low, high = np.inf, -np.inf
-    slopes = given.terms[:, 1:] * np.arange(1.0, PIECE_TERMS)
-    for terms, slope in zip(given.terms, slopes, strict=True):
-        values = [terms[0], terms.sum()]
+    order = np.arange(given.terms.shape[1])
+    ends = np.array([given.terms[:, 0], given.ends])
+    low, high = float(ends.min()), float(ends.max())
+    slopes = given.terms[:, 1:] * order[1:]
+    # a polynomial exceeds its ends by an eighth of its largest second derivative at most
+    reach = np.abs(given.terms) @ (order * (order - 1.0)) / 8.0
+    beats = (ends.max(axis=0) + reach > high) | (ends.min(axis=0) - reach < low)
+    for terms, slope in zip(given.terms[beats], slopes[beats], strict=True):
+        values = []
         if slope[1:].any():
             roots = np.roots(slope[::-1])
             inside = roots[(np.abs(roots.imag) <= 1e-12) & (roots.real > 0.0) & (roots.real < 1.0)].real
-            values += [float(np.polyval(terms[::-1], x)) for x in inside]
-        low, high = min(low, *values), max(high, *values)
+            values = [float(np.polyval(terms[::-1], x)) for x in inside]
+        low, high = min([low, *values]), max([high, *values])
     return low, high

@@ -18,12 +18,12 @@ from .baseline import BASELINES, corrected
 from .densities import density_of
 from .formats.files import Given, read_series
 from .formats.series import Series
-from .formulas import LAWS, Formula, checked_pulse
+from .formulas import LAWS, Corners, checked_pulse
 from .formulas import pulse as pulse_samples
-from .formulas import sweep as sweep_samples
+from .formulas import sweep as sweep_series
 from .generators import Noise, random_samples, samples_in, variance
 from .generators import envelope as over_time
-from .pieces import INTERPOLATIONS, Pieces, even_step, interpolated, with_slopes
+from .pieces import INTERPOLATIONS, Pieces, even_step, extremes, interpolated, levelled, scaled
 from .quantities import angular, frequency_in, number_in, time_in
 
 QUANTITIES = ("force", "acceleration", "velocity", "displacement")
@@ -61,8 +61,8 @@ class Record(Shown):
         Factor of the values.
     name : str, optional
         Name in datasets and pictures.
-    slopes : sequence of float, optional
-        Slopes at the samples, of "cubic" records by a formula.
+    series : Pieces, optional
+        Polynomials between the samples of a record by a formula, in place of an interpolation.
     source : str
         What it comes from, such as a file with its checksum and what it says of event and station.
     note : str
@@ -88,7 +88,7 @@ class Record(Shown):
     vector: Any = None
     scale: float = 1.0
     name: str | None = None
-    slopes: Any = None
+    series: Pieces | None = None
     source: str = field(default="", compare=False)
     note: str = field(default="", compare=False)
 
@@ -123,25 +123,7 @@ class Record(Shown):
         self._set("scale", checks.number(self.scale, "scale"))
         if self.unit is not None:
             self._set("unit", _unit(self.unit, self.quantity))
-        self._check_slopes()
         self._check_shape()
-
-    def _check_slopes(self) -> None:
-        if self.slopes is None:
-            return
-        if self.interpolation != "cubic" or self.quantity == "displacement":
-            raise InputError(
-                "cannot use",
-                "slopes",
-                f'with {self.quantity} and "{self.interpolation}": they belong to "cubic" forces, '
-                "accelerations and velocities; omit them",
-            )
-        slopes = _samples(self.slopes, "slopes")
-        if slopes.size != self.values.size:
-            raise InputError(
-                "slopes", f"must have as many values as the record ({self.values.size}); got {slopes.size}"
-            )
-        self._set("slopes", slopes)
 
     def _check_shape(self) -> None:
         if self.quantity != "force":
@@ -233,7 +215,7 @@ class Record(Shown):
         unit: str | None = None,
         **more: Any,
     ) -> "Record":
-        """A single pulse, exact to 1e-9 of its amplitude.
+        """A single pulse, exact to rounding.
 
         Parameters
         ----------
@@ -276,7 +258,7 @@ class Record(Shown):
         unit: str | None = None,
         **more: Any,
     ) -> "Record":
-        """A sine of changing frequency, such as a run-up, exact to 1e-9 of its amplitude.
+        """A sine of constant or changing frequency, such as a run-up, exact to rounding.
 
         Parameters
         ----------
@@ -286,28 +268,29 @@ class Record(Shown):
             Time between them, > 0.
         law : {"linear", "log"}
             Frequency over time: a straight line, or an exponential.
-        amplitude, quantity, unit, more
+        amplitude, quantity, unit
             As of `pulse`.
+        more
+            `rise` and `fall`: times in which the amplitude grows from 0 at the beginning and falls to 0 at the
+            end, as 3 s^2 - 2 s^3 over the share s of the time; a displacement needs both, as the velocity of
+            the base must not jump.  And mass, vector, scale, name of `Record`.
 
         Raises
         ------
         InputError
-            A value is out of range, or the sweep needs more than 10^7 samples, 252 per cycle of the highest
+            A value is out of range, or the sweep needs more than 2 10^6 samples, 32 per cycle of the highest
             frequency.
         """
         _checked(quantity, unit)
         checks.choice(law, "law", LAWS)
-        if quantity == "displacement":
-            raise InputError(
-                "cannot use",
-                "a sweep",
-                "of displacement: the velocity of the base would jump at its ends; give the acceleration",
-            )
         turn = angular(unit)
         first, last = (
             turn * frequency_in(value, name, unit) for name, value in (("start", start), ("stop", stop))
         )
-        made = sweep_samples(first, last, time_in(duration, "duration", unit), law)
+        time = time_in(duration, "duration", unit)
+        rising = _ramp(more.pop("rise", 0.0), "rise", unit, quantity, time)
+        falling = _ramp(more.pop("fall", 0.0), "fall", unit, quantity, time - rising)
+        made = sweep_series(first, last, time, law, rising, falling)
         return cls._formula_record(made, amplitude, quantity, unit, {"name": "sweep", **more})
 
     @classmethod
@@ -394,17 +377,24 @@ class Record(Shown):
 
     @classmethod
     def _formula_record(
-        cls, made: Formula, amplitude: float | str, quantity: str, unit: str | None, more: Mapping[str, Any]
+        cls,
+        made: Corners | Pieces,
+        amplitude: float | str,
+        quantity: str,
+        unit: str | None,
+        more: Mapping[str, Any],
     ) -> "Record":
         size = number_in(amplitude, "amplitude", KINDS[quantity], unit and _unit(unit, quantity))
-        slopes = None if made.slopes is None else size * made.slopes
-        return cls(
-            size * made.values, time=made.times, quantity=quantity, unit=unit,
-            interpolation=made.interpolation, slopes=slopes, **more,
-        )  # fmt: skip
+        given: dict[str, Any] = {"time": made.times, "quantity": quantity, "unit": unit, **more}
+        if isinstance(made, Corners):
+            return cls(size * made.values, interpolation=made.interpolation, **given)
+        series = scaled(made, 1.0, size)
+        return cls(np.append(series.terms[:, 0], series.ends[-1]), series=series, **given)
 
     def scaled_to(self, peak: float | str) -> "Record":
         """The record times a positive factor, so that its largest absolute sample is `peak`.
+
+        Of a formula it is the largest absolute value.
 
         peak : in the unit of the record, or with a unit, > 0
 
@@ -414,7 +404,7 @@ class Record(Shown):
             It is not above 0, or all samples are 0.
         """
         size = number_in(peak, "peak", KINDS[self.quantity], self.unit, above=0.0)
-        largest = float(np.abs(self.values).max())
+        largest = self._largest
         if largest == 0.0:
             raise InputError(f"cannot scale a record to peak {peak}: all its samples are 0; give another one")
         return replace(self, scale=math.copysign(size / largest, self.scale))
@@ -424,7 +414,7 @@ class Record(Shown):
 
     def __repr__(self) -> str:
         unit = f" {self.unit}" if self.unit else ""
-        peak = float(np.abs(self.values).max() * abs(self.scale))
+        peak = self._largest * abs(self.scale)
         return (
             (
                 f"<Record {self.name or ''}: {self.quantity}, {self.values.size} samples over "
@@ -433,6 +423,13 @@ class Record(Shown):
             .replace("  ", " ")
             .replace(" :", ":")
         )
+
+    @property
+    def _largest(self) -> float:
+        """Largest absolute sample; of a formula also between the samples."""
+        if self.series is not None:
+            return float(np.abs(extremes(self.series)).max())
+        return float(np.abs(self.values).max())
 
     @property
     def times(self) -> np.ndarray:
@@ -449,17 +446,30 @@ class Record(Shown):
     @property
     def pieces(self) -> Pieces:
         """The record as polynomials between its samples, in its own units."""
+        if self.series is not None:
+            return scaled(self.series, 1.0, self.scale)
         times = self.times
         step = self.dt if self.dt is not None else even_step(times)
         if step is None:
-            steps = np.diff(times)
+            steps = levelled(np.diff(times), float(times[-1]))
         else:
             steps = np.full(times.size - 1, step)
             times = np.arange(times.size) * step
-        if self.slopes is not None:
-            return with_slopes(times, steps, self.values * self.scale, self.slopes * self.scale)
         ends = "clamped" if self.quantity == "displacement" else "natural"
         return interpolated(times, steps, self.values * self.scale, str(self.interpolation), ends)
+
+
+def _ramp(given: float | str, name: str, unit: str | None, quantity: str, most: float) -> float:
+    """Time in which the amplitude of a sweep rises or falls, within the time that is left."""
+    found = time_in(given, name, unit, least=0.0, above=-math.inf)
+    if found == 0.0 and quantity == "displacement":
+        raise InputError(
+            name, "must be > 0 for a displacement: the velocity of the base must not jump; got 0"
+        )
+    if found > most:
+        less = "" if name == "rise" else " - rise"
+        raise InputError(name, f"must be <= duration{less}, {most:g}; got {found:g}")
+    return found
 
 
 def _checked(quantity: str, unit: object) -> None:

@@ -1,7 +1,7 @@
 """The table [record] of a configuration: files, or a pulse, a sweep, or random records.
 
 file = "elcentro.at2", files = "suite/*.AT2", pulse = { kind = "ricker", amplitude = "0.4 g",
-duration = "2 s" }, sweep = { from, to, duration, law }, or generate = { kind, duration, dt, seed, .. }.
+duration = "2 s" }, sweep = { from, to, duration, law, .. }, or generate = { kind, duration, dt, seed, .. }.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -21,7 +21,7 @@ SOURCES = ("file", "files", "pulse", "sweep", "generate")
 
 #: Keys of these tables.
 _OF_PULSE = ("kind", "amplitude", "duration", "rise")
-_OF_SWEEP = ("from", "to", "duration", "law", "amplitude")
+_OF_SWEEP = ("from", "to", "duration", "law", "amplitude", "rise", "fall")
 _OF_GENERATE = (
     "kind", "duration", "dt", "seed", "count", "level", "rms", "peak", "envelope", *OF_DENSITIES,
 )  # fmt: skip

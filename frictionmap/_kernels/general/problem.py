@@ -31,8 +31,12 @@ INVERSE = np.array([1.0 / ((k + 1.0) * (k + 2.0)) for k in range(TERMS)])
 #: Numbers kept per series: a whole number of vectors.
 WIDTH = 32
 
-#: Terms of a channel that is a polynomial over an interval of a record, in place of harmonics.
+#: Terms of a channel over an interval of a record of samples: a cubic, and two integrals of it.  Those of
+#: records by a formula have more, up to TERMS of a load and LONG of the place of a wall.
 PIECE_TERMS = 6
+
+#: Places in `Row.intervals`: number K of half a period; terms of a channel over an interval of a record.
+HALF, LOAD_TERMS = 0, 1
 
 #: k + 1: factors of a derivative.
 NEXT = np.arange(1.0, WIDTH + 1.0)
@@ -112,7 +116,7 @@ class Row(NamedTuple):
     """
 
     numbers: np.ndarray  # (3,) see H
-    intervals: np.ndarray  # (1,) int: K
+    intervals: np.ndarray  # (2,) int: see HALF
     stiffness: np.ndarray  # (m,) h^2 w^2/r^2
     damping: np.ndarray  # (m, m) h C/r
     velocity_term: np.ndarray  # (TERMS, M) what term k + 1 of a mode adds to term k + 2, by its own damping

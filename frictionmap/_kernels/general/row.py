@@ -9,7 +9,7 @@ from ..compiler.vectors import LANES, filled, load, store
 from .laws.contact import force_weight
 from .laws.kinds import state_size
 from .laws.speed import has_law
-from .problem import LONG, PIECE_TERMS, SECTION, SIZE, TERMS, TURN, WIDTH, H, Motion, Parts, R, Row, padded
+from .problem import LOAD_TERMS, LONG, SECTION, SIZE, TERMS, TURN, WIDTH, H, Motion, Parts, R, Row, padded
 
 #: Intervals of a period whose load is kept, and patterns whose derivatives are.
 _KEPT_INTERVALS = 512
@@ -56,7 +56,7 @@ def make_row(problem):
     most = most_intervals(problem, _KEPT_INTERVALS)
     kept = _KEPT_PATTERNS if has_law(problem) else min(1 << contacts, _KEPT_PATTERNS)
     return Row(
-        np.empty(3), np.zeros(1, np.int64), np.empty(modes), np.empty((modes, modes)),
+        np.empty(3), np.zeros(2, np.int64), np.empty(modes), np.empty((modes, modes)),
         np.zeros((TERMS, width)), np.zeros((TERMS, width)), np.zeros((modes, width)),
         np.zeros((channels, width)), np.zeros((contacts, width)), np.zeros((contacts, width)),
         np.empty((contacts, contacts)), np.zeros(contacts), np.zeros((harmonics, WIDTH)),
@@ -145,10 +145,10 @@ def _fill_channels(problem, row, tau, series, first):
 
 
 @kernel
-def shift_piece(series, at, x):
-    """Replace the polynomial in row `at`, of PIECE_TERMS, by the same one from x on."""
-    for i in range(PIECE_TERMS - 1):
-        for k in range(PIECE_TERMS - 2, i - 1, -1):
+def shift_piece(series, at, x, terms):
+    """Replace the polynomial in row `at`, of `terms` terms, by the same one from x on."""
+    for i in range(terms - 1):
+        for k in range(terms - 2, i - 1, -1):
             series[at, k] += x * series[at, k + 1]
 
 
@@ -159,7 +159,7 @@ def _shift_pieces(row, x, series, first, channels):
         for k in range(0, WIDTH, LANES):
             store(load(row.loads, d * WIDTH + k), series, (first + d) * WIDTH + k)
         if x != 0.0:
-            shift_piece(series, first + d, x)
+            shift_piece(series, first + d, x, row.intervals[LOAD_TERMS])
 
 
 @kernel

@@ -7,7 +7,7 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..compiler.vectors import LANES, filled, load, store
 from ..general.crossings import value_at
-from ..general.problem import PIECE_TERMS, SIZE, TERMS, WIDTH, H, P, Q, first_contact_row, force_row
+from ..general.problem import LOAD_TERMS, SIZE, TERMS, WIDTH, H, P, Q, first_contact_row, force_row
 from ..general.record import HIGH, HIGH_AT, LOW, LOW_AT, Record, keep_range, keep_works
 
 STOP, START, TURN = 0, 1, 2
@@ -92,7 +92,7 @@ def fill_watched(problem, row, motion, kept, i):
     for d in range(problem.push.shape[1]):
         share = weights[i, 2 * modes + contacts + d]
         if share != 0.0:
-            for k in range(PIECE_TERMS):
+            for k in range(row.intervals[LOAD_TERMS]):
                 scratch[VALUE, k] += share * series[modes + d, k]
 
 
@@ -111,13 +111,13 @@ def _keep_peaks(problem, row, motion, begin, end, kept):
 
 
 @kernel
-def _integral(rate, place, end):
-    """Integral over [0, end] of the derivative of the first series, of PIECE_TERMS, times the second.
+def _integral(rate, place, end, terms):
+    """Integral over [0, end] of the derivative of the first series, of `terms` terms, times the second.
 
     rate, place : (WIDTH,) series
     """
     sum_ = 0.0
-    for i in range(PIECE_TERMS - 1):
+    for i in range(terms - 1):
         if rate[i + 1] != 0.0:
             part = 0.0
             for k in range(TERMS - 1, -1, -1):
@@ -148,6 +148,7 @@ def _keep_works(problem, row, motion, end, kept):
     contacts, modes = problem.chi.shape
     channels = problem.push.shape[1]
     series, scratch, first = motion.series, motion.scratch, first_contact_row(problem)
+    terms = row.intervals[LOAD_TERMS]
     for j in range(contacts):
         kept.slides[PRESENT, j] -= kept.record.distance[j]
     keep_works(problem, row, motion, end, kept.record, first)
@@ -160,11 +161,11 @@ def _keep_works(problem, row, motion, end, kept):
         if fill_pushed(problem, motion, d):
             pushed = scratch[VALUE]
             ends = value_at(scratch, VALUE, end) * value_at(series, modes + d, end) - pushed[0] * wall[0]
-            kept.works[OF_LOAD] += ends - _integral(wall, pushed, end)
+            kept.works[OF_LOAD] += ends - _integral(wall, pushed, end, terms)
         for j in range(contacts):
             if problem.base[j, d] != 0.0:
                 force = series[force_row(problem, j)]
-                kept.works[OF_BASE] -= problem.base[j, d] * _integral(wall, force, end)
+                kept.works[OF_BASE] -= problem.base[j, d] * _integral(wall, force, end, terms)
 
 
 @kernel
@@ -198,7 +199,7 @@ def store_state(problem, row, motion, x, kept):
         kept.senses[k, j] = motion.sense[j]
     for d in range(problem.push.shape[1]):
         load_ = 0.0
-        for i in range(PIECE_TERMS - 1, -1, -1):
+        for i in range(row.intervals[LOAD_TERMS] - 1, -1, -1):
             load_ = load_ * x + row.loads[d, i]
         kept.states[k, 1 + 2 * modes + contacts + d] = load_
 

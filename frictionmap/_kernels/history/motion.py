@@ -10,17 +10,31 @@ from ..compiler.packed import packed
 from ..general.counts import COUNT_ROWS
 from ..general.crossings import NONE, value_at
 from ..general.follow import count_time, pass_event, prepare
-from ..general.laws.coulomb import first_event, watched_slope
+from ..general.laws.coulomb import first_event, reaches, watched_slope
 from ..general.laws.elastic import rest_springs
 from ..general.laws.kinds import has_constraint
 from ..general.pattern import BOX_ROWS, PARTICIPATES, settle, slide_velocity, stop_exactly
-from ..general.problem import PIECE_TERMS, SIZE, TURN, F, H, Motion, P, Q, Row, force_row, normal_row
+from ..general.problem import (
+    HALF,
+    LOAD_TERMS,
+    SIZE,
+    TURN,
+    F,
+    H,
+    Motion,
+    P,
+    Q,
+    Row,
+    force_row,
+    normal_row,
+    velocity_row,
+)
 from ..general.record import clear_record
 from ..general.row import make_motion, make_row, set_channels, set_interval, shift_piece
 from ..general.series import advance, expand, factor_held
 from .asleep import is_asleep
 from .kept import keep_ends, keep_present, keep_step, list_changes, store_state
-from .tables import Tables, forget, has_tables, make_tables, pass_by_tables
+from .tables import Tables, has_tables, make_tables, pass_by_tables, set_tables
 
 #: What became of a motion.
 RESOLVED, RINGING, CREEPING, TOO_MANY_EVENTS, RECORD_TOO_SHORT, UNDETERMINED = 0, 1, 2, 3, 4, 5
@@ -30,6 +44,9 @@ _MOST_EVENTS = 2000
 
 #: A force within this share of its limit is at it.
 _AT_LIMIT = 1e-14
+
+#: Leading terms of a slide's velocity that may be zero at most: where the load begins as t^4.
+_MOST_ZEROS = 6
 
 #: A velocity at the start within this share of its terms is rest.
 _AT_REST = 1e-12
@@ -61,16 +78,16 @@ class Memory(NamedTuple):
 class Course(NamedTuple):
     """A record in K - 1 intervals, and the one after it, which is repeated."""
 
-    pieces: np.ndarray  # (K, D, PIECE_TERMS) polynomials of the channels over the interval
+    pieces: np.ndarray  # (K, D, terms) polynomials of the channels over the interval
     steps: np.ndarray  # (K,) lengths of the intervals
     times: np.ndarray  # (K,) when they begin
     jumps: np.ndarray  # (K,) bool: whether a channel jumps where the interval begins
 
 
 @entry
-def make_memory(problem, watched, wanted):
+def make_memory(problem, watched, terms, lengths):
     """Allocate it; see `tables.make_tables`."""
-    tables = make_tables(problem, watched, wanted and has_tables(problem))
+    tables = make_tables(problem, watched, terms, lengths if has_tables(problem) else 0)
     contacts = problem.spring.size
     return Memory(
         make_row(problem), make_motion(problem), tables, np.zeros((BOX_ROWS, contacts)),
@@ -102,17 +119,34 @@ def _next_event(problem, friction, motion, end):
     """Return (x, contact, side) of the first event up to `end`; x = NONE without one.
 
     A limit that a force touches is no event: at a sample the slope of the load after it decides, and a
-    constant force at its limit holds.
+    constant force at its limit holds.  The other limit may be reached later in the step.
     """
     found, contact, side = NONE, -1, 0
     for j in range(motion.sense.size):
         x, of = first_event(problem, friction, motion, j)
         if x < found and x <= end:
-            may_touch = of != 0 and motion.fresh[j] == 0
-            if may_touch and _touches(problem, friction, motion, (x, j, of), end):
-                continue
+            if of != 0 and motion.fresh[j] == 0 and _touches(problem, friction, motion, (x, j, of), end):
+                of = -of
+                x = reaches(problem, friction, motion, j, of)
+                if x >= found or x > end or _touches(problem, friction, motion, (x, j, of), end):
+                    continue
             found, contact, side = x, j, of
     return found, contact, side
+
+
+@kernel
+def _skip_zeros(problem, motion):
+    """Count all leading terms of the velocities of slides that begin which are zero.
+
+    The load rises without a slope, at the beginning of a record too, from a limit that a contact is at.
+    """
+    for j in range(motion.sense.size):
+        if motion.sense[j] == 0 or not has_constraint(problem, j):
+            continue
+        while 0 < motion.fresh[j] < _MOST_ZEROS:
+            if motion.series[velocity_row(problem, j), motion.fresh[j]] != 0.0:
+                break
+            motion.fresh[j] += 1
 
 
 @kernel
@@ -137,6 +171,7 @@ def _cross(problem, friction, memory, kept, jumped, listed):
     for k in range(_MOST_EVENTS):
         rest = 1.0 - x
         expand(problem, row, friction, x * h, 0 if x == 0.0 else -1, motion, True)
+        _skip_zeros(problem, motion)
         if listed and (k > 0 or jumped):
             keep_present(problem, row, motion, x, 0.0, kept)
         event = _next_event(problem, friction, motion, rest)
@@ -167,15 +202,15 @@ def _cross(problem, friction, memory, kept, jumped, listed):
 def _put_pieces(row, pieces, part, parts):
     """Put the polynomials of one of the equal parts of an interval in the row.
 
-    pieces : (D, PIECE_TERMS), over the whole interval
+    pieces : (D, terms), over the whole interval
     """
-    begin, share = part / parts, 1.0 / parts
+    begin, share, terms = part / parts, 1.0 / parts, pieces.shape[1]
     for d in range(pieces.shape[0]):
-        for k in range(PIECE_TERMS):
+        for k in range(terms):
             row.loads[d, k] = pieces[d, k]
-        shift_piece(row.loads, d, begin)
+        shift_piece(row.loads, d, begin, terms)
         scale = 1.0
-        for k in range(PIECE_TERMS):
+        for k in range(terms):
             row.loads[d, k] *= scale
             scale *= share
 
@@ -190,7 +225,7 @@ def _set_length(problem, memory, h):
         for m in range(problem.squares.size):
             motion.state[P, m] *= h / before
         factor_held(problem, row, motion)
-        forget(memory.tables)
+        set_tables(memory.tables, h)
 
 
 @kernel
@@ -232,7 +267,7 @@ def _sense_at_start(problem, row, motion, j):
     for m in range(modes):
         size += abs(problem.chi[j, m] * motion.state[P, m])
     for d in range(channels):
-        for k in range(1, PIECE_TERMS):
+        for k in range(1, row.intervals[LOAD_TERMS]):
             size += abs(problem.base[j, d] * motion.series[modes + d, k])
     return int(np.sign(w)) if abs(w) > _AT_REST * size else 0
 
@@ -246,10 +281,11 @@ def _begin(problem, friction, memory, course, start, senses):
     problem, friction, memory, course, start, senses : see `follow_record`
     """
     row, motion = memory.row, memory.motion
-    row.intervals[0] = 1
+    row.intervals[HALF], row.intervals[LOAD_TERMS] = 1, course.pieces.shape[2]
     row.loads[:] = 0.0
     parts = _parts_of(problem, course.steps[0])
     set_interval(problem, 0, row, course.steps[0] / parts)
+    set_tables(memory.tables, row.numbers[H])
     _put_pieces(row, course.pieces[0], 0, parts)
     for m in range(problem.squares.size):
         motion.state[Q, m] = start[Q, m]

@@ -87,7 +87,9 @@ def follow_lanes(record, lengths, cells, state, begins):
     state : (STATE_ROWS, LANES) see `spectrum_lanes`; at the end of the block
     begins : whether it is the first block, at whose beginning all are at rest
     """
-    lanes = Lanes(state, np.zeros((lengths.size, TABLE_ROWS, LANES)), np.zeros((3, SERIES)))
+    lanes = Lanes(
+        state, np.zeros((lengths.size, TABLE_ROWS, LANES)), np.zeros((3, SERIES)), record.terms.shape[1]
+    )
     _follow(record, lanes, lengths, cells, begins)
 
 
@@ -108,7 +110,7 @@ def _follow(record, lanes, lengths, cells, begins):
 @entry
 def rest_lanes(state, duration):
     """Follow eight oscillators after their record, which ends at `duration`, until they rest permanently."""
-    lanes = Lanes(state, np.zeros((0, TABLE_ROWS, LANES)), np.zeros((3, SERIES)))
+    lanes = Lanes(state, np.zeros((0, TABLE_ROWS, LANES)), np.zeros((3, SERIES)), 1)
     _rest(lanes, duration)
 
 

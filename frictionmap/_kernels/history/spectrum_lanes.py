@@ -19,12 +19,17 @@ import numpy as np
 
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, least, load, magnitude, mask_above, most, store
+from ..general.problem import PIECE_TERMS
 
 #: Largest angle of the fastest part of the motion in a sample; longer ones are divided.
 TURN = 1.0
 
 #: Terms of series: 1/24! is below the rounding error of 1/2.
 MOST_TERMS = 24
+
+#: Terms of a series of v beyond those without a load: of a cubic, of records of samples; and of all loads:
+#: both turn by 3 together at most, and 3^30/30! = 8e-19.
+_CUBIC, _MOST_WITH_LOAD = 3, 30
 
 #: Terms below this share are rounding error.
 _NEGLIGIBLE = 1e-18
@@ -49,13 +54,13 @@ XV, XA, XD, VV, VA, VD = 0, 1, 2, 3, 4, 5
 FOURTH_V, FOURTH_A, FOURTH_D, SECOND_V, SECOND_A, SECOND_D, TERMS = 6, 7, 8, 9, 10, 11, 12
 TABLE_ROWS = 13
 
-#: 1/k, and 1/((k+1)(k+2)).
-INVERSE = np.array([0.0] + [1.0 / k for k in range(1, MOST_TERMS + 4)])
-_PAIRS = np.array([1.0 / ((k + 1.0) * (k + 2.0)) for k in range(MOST_TERMS + 4)])
-
 #: Rows of `Lanes.series`: v, the load, what is watched; numbers in a row.
 RATES, LOAD, WATCHED = 0, 1, 2
 SERIES = 32
+
+#: 1/k, and 1/((k+1)(k+2)).
+INVERSE = np.array([0.0] + [1.0 / k for k in range(1, SERIES)])
+_PAIRS = np.array([1.0 / ((k + 1.0) * (k + 2.0)) for k in range(SERIES)])
 
 _ALL = 2**LANES - 1
 
@@ -68,7 +73,7 @@ class Load(NamedTuple):
     steps: np.ndarray  # (K,) lengths
     which: np.ndarray  # (K,) int: number of the length among the distinct ones
     jumps: np.ndarray  # (K,) bool: whether the load jumps where the sample begins
-    terms: np.ndarray  # (K, PIECE_TERMS) polynomials in (t - t_k)/h_k
+    terms: np.ndarray  # (K, terms) polynomials in (t - t_k)/h_k
     curved: bool  # whether some are not straight
     base: bool  # whether it is minus the acceleration of the base
 
@@ -79,17 +84,18 @@ class Lanes(NamedTuple):
     state: np.ndarray  # (STATE_ROWS, LANES)
     tables: np.ndarray  # (lengths, TABLE_ROWS, LANES)
     series: np.ndarray  # (3, SERIES)
+    load_terms: int  # of the load in a sample
 
 
 @kernel
-def series_terms(angle, curved):
-    """Number of terms of a series over `angle` of the fastest part; `curved` loads have three terms more."""
+def series_terms(angle, more):
+    """Number of terms of a series over `angle` of the fastest part, and `more` for those of the load."""
     terms = 4
     size = angle**4 / 24.0
     while size > _NEGLIGIBLE and terms < MOST_TERMS:
         terms += 1
         size *= angle / terms
-    return terms + 3 if curved else terms
+    return min(terms + more, _MOST_WITH_LOAD)
 
 
 @inner_kernel
@@ -105,11 +111,11 @@ def fill_rates(series, h, damping, square, terms):
 
 
 @kernel
-def _fill_steps(lanes, t, h, i, curved):
+def _fill_steps(lanes, t, h, i, more):
     """Fill what is added to x and v in a sample of length h."""
     series, table = lanes.series, lanes.tables[t]
     damping, square = lanes.state[DAMPING, i], lanes.state[SQUARE, i]
-    terms = series_terms(lanes.state[RATE, i] * h, curved)
+    terms = series_terms(lanes.state[RATE, i] * h, more)
     table[TERMS, i] = terms
     for unit in range(3):
         for k in range(SERIES):
@@ -148,9 +154,12 @@ def _fill_bounds(lanes, t, h, i):
 @kernel
 def fill_tables(lanes, lengths, curved):
     """Fill the tables of all distinct lengths of samples."""
+    more = 0
+    if curved:
+        more = _CUBIC if lanes.load_terms <= PIECE_TERMS else lanes.load_terms - 1
     for t in range(lengths.size):
         for i in range(LANES):
-            _fill_steps(lanes, t, lengths[t], i, curved)
+            _fill_steps(lanes, t, lengths[t], i, more)
             _fill_bounds(lanes, t, lengths[t], i)
 
 

@@ -7,7 +7,6 @@ it decides.
 import math
 
 from ..compiler import inner_kernel, kernel
-from ..general.problem import PIECE_TERMS
 from ..taylor_series import MAX_POLISH, ONE_STEP, cubic_root, first_root, reversion
 from .motion import RESOLVED, TOO_MANY_EVENTS
 from .spectrum_lanes import (
@@ -89,7 +88,8 @@ def _value(row, terms, x):
 def _fill_load(pieces, begin, rest, curved, series):
     """Fill the series of the load over a share `rest` of the sample after `begin`."""
     row = series[LOAD]
-    for k in range(PIECE_TERMS):
+    terms = pieces.size
+    for k in range(terms):
         row[k] = pieces[k]
     if begin == 0.0:
         return
@@ -97,11 +97,11 @@ def _fill_load(pieces, begin, rest, curved, series):
         row[0] += begin * row[1]
         row[1] *= rest
         return
-    for i in range(PIECE_TERMS - 1):
-        for k in range(PIECE_TERMS - 2, i - 1, -1):
+    for i in range(terms - 1):
+        for k in range(terms - 2, i - 1, -1):
             row[k] += begin * row[k + 1]
     scale = 1.0
-    for k in range(PIECE_TERMS):
+    for k in range(terms):
         row[k] *= scale
         scale *= rest
 
@@ -150,10 +150,10 @@ def _first_zero(row, first, terms):
 
 
 @inner_kernel
-def _change(row):
+def _change(row, terms):
     """Bound on the distance of a load from its value at the beginning of a piece."""
     sum_ = 0.0
-    for k in range(1, PIECE_TERMS):
+    for k in range(1, terms):
         sum_ += abs(row[k])
     return sum_
 
@@ -204,7 +204,7 @@ def _may_beat(lanes, i, h, ends):
     """
     state, rates, given = lanes.state, lanes.series[RATES], lanes.series[LOAD]
     slope = bend = 0.0
-    for k in range(1, PIECE_TERMS):
+    for k in range(1, lanes.load_terms):
         slope += k * abs(given[k])
         bend += k * (k - 1.0) * abs(given[k])
     damping, rate = state[DAMPING, i], state[RATE, i]
@@ -232,11 +232,11 @@ def _keep_acceleration(lanes, i, h, base, terms, end):
 def _first_overload(lanes, i, side):
     """First x in [0, 1] at which the load overcomes the contact towards `side`; NONE without one."""
     state, given, row = lanes.state, lanes.series[LOAD], lanes.series[WATCHED]
-    limit = state[STATIC, i]
+    limit, terms = state[STATIC, i], lanes.load_terms
     row[0] = limit - side * (given[0] - state[SQUARE, i] * state[X, i])
-    for k in range(1, PIECE_TERMS):
+    for k in range(1, terms):
         row[k] = -side * given[k]
-    if row[0] > _change(given):
+    if row[0] > _change(given, terms):
         return NONE
     near = _AT_LIMIT * limit
     if row[0] < -near:
@@ -244,15 +244,15 @@ def _first_overload(lanes, i, side):
     first = 0
     if row[0] <= near:
         first = 1
-        while first < PIECE_TERMS and row[first] == 0.0:
+        while first < terms and row[first] == 0.0:
             first += 1
-        if first == PIECE_TERMS:
+        if first == terms:
             return NONE
         if row[first] < 0.0:
             return 0.0
-    x = first_root(row, first, PIECE_TERMS)
-    if 0.0 < x <= 1.0 and abs(_value(row, PIECE_TERMS, 1.0)) <= near:
-        middle = _value(row, PIECE_TERMS, 0.5 + 0.5 * x)
+    x = first_root(row, first, terms)
+    if 0.0 < x <= 1.0 and abs(_value(row, terms, 1.0)) <= near:
+        middle = _value(row, terms, 0.5 + 0.5 * x)
         if abs(middle) <= near:
             return NONE  # reached at the end
     return x
@@ -265,7 +265,7 @@ def _wait(lanes, i, base):
     up, down = _first_overload(lanes, i, 1.0), _first_overload(lanes, i, -1.0)
     x, side = (up, 1.0) if up <= down else (down, -1.0)
     if base and x > 0.0:
-        _keep_peak(state, i, given, PIECE_TERMS, min(x, 1.0))
+        _keep_peak(state, i, given, lanes.load_terms, min(x, 1.0))
     if x > 1.0:
         return NONE
     pull = side * state[STATIC, i]
@@ -327,7 +327,7 @@ def slide(lanes, i, h, base, terms):
     if found > 1.0 and sense * v <= 0.0:
         found = 1.0  # the last rounding error
     x = state[X, i] + h * end * place
-    pull = _value(lanes.series[LOAD], PIECE_TERMS, end) - state[SQUARE, i] * x
+    pull = _value(lanes.series[LOAD], lanes.load_terms, end) - state[SQUARE, i] * x
     resist = state[FORCE, i] + state[DAMPING, i] * v
     ends = (state[ACC, i], pull - resist)
     if base:

@@ -8,7 +8,10 @@ slide, and the terms of the load.  For every set of held contacts the part of ea
   its fourth derivative (see `crossings`),
 - the quantities whose peaks are kept, at the end; between the ends they exceed these by an eighth of their
   second derivative at most,
-- integrals of the displacements that the load pushes, for its work.
+- integrals of the displacements that the load pushes, for its work, and of the forces of held contacts on
+  walls that move, for theirs.
+
+Belts change nothing but the velocities watched in contacts that slide, by a constant.
 
 An interval in which nothing watched can reach its limit, and no quantity its peak so far, is passed by sums
 of these parts.  Others are followed by their series.
@@ -25,10 +28,11 @@ from ..compiler.vectors import LANES, filled, load, store
 from ..general.counts import STUCK
 from ..general.crossings import value_at
 from ..general.glide import begin_with
+from ..general.laws.contact import has_tables as has_tables_of
 from ..general.laws.kinds import has_force, state_size
 from ..general.problem import (
+    LOAD_TERMS,
     LONG,
-    PIECE_TERMS,
     TERMS,
     F,
     H,
@@ -39,9 +43,9 @@ from ..general.problem import (
     padded,
     varies,
 )  # fmt: skip
-from ..general.record import HIGH, LOW, OF_FRICTION
+from ..general.record import HIGH, LOW, OF_FRICTION, OF_WALL
 from ..general.series import Friction, expand
-from .kept import LARGEST, OF_LOAD, PRESENT, VALUE, fill_pushed, fill_watched
+from .kept import LARGEST, OF_BASE, OF_LOAD, PRESENT, VALUE, fill_pushed, fill_watched
 
 #: Sets of held contacts whose tables are kept, and numbers in all tables, at most.
 _MOST_SETS, _MOST_NUMBERS = 64, 1 << 22
@@ -51,11 +55,16 @@ _HERMITE, _OVERSHOOT = 1.0 / 384.0, 1.0 / 8.0
 
 
 class Tables(NamedTuple):
-    """Tables of S sets of held contacts; U units, B rows of parts, G rows of bounds, filled up to vectors."""
+    """Tables of S sets of held contacts for each of I lengths of intervals.
 
-    parts: np.ndarray  # (S U, B)
-    bounds: np.ndarray  # (S U, G)
-    known: np.ndarray  # (S,) int: which set is there, plus 1; 0: none
+    U units, B rows of parts, G rows of bounds, filled up to vectors; places are I S.
+    """
+
+    parts: np.ndarray  # (I S U, B)
+    bounds: np.ndarray  # (I S U, G)
+    known: np.ndarray  # (I S,) int: which set is there, plus 1; 0: none
+    lengths: np.ndarray  # (I,) lengths of intervals; 0: none yet
+    place: np.ndarray  # (1,) int: number of the present length
     units: np.ndarray  # (U,) the units of an interval
     sums: np.ndarray  # (B,)
     most: np.ndarray  # (G,)
@@ -64,24 +73,42 @@ class Tables(NamedTuple):
 
 
 @kernel
-def _sizes(problem, watched):
+def _has_moving_wall(problem, j):
+    """Whether the wall of a contact moves."""
+    moving = problem.belt[j] != 0.0
+    for d in range(problem.push.shape[1]):
+        moving = moving or problem.base[j, d] != 0.0
+    return moving
+
+
+@kernel
+def _sizes(problem, watched, terms):
     """(units, rows of parts) of a system that watches this number of quantities."""
     contacts, channels = problem.spring.size, problem.push.shape[1]
-    units = state_size(problem) + contacts + channels * PIECE_TERMS
-    return units, state_size(problem) + 4 * contacts + watched + channels * (PIECE_TERMS - 1)
+    moments = channels
+    for j in range(contacts):
+        if _has_moving_wall(problem, j):
+            moments += 1
+    units = state_size(problem) + contacts + channels * terms
+    return units, state_size(problem) + 4 * contacts + watched + moments * (terms - 1)
 
 
 @entry
-def make_tables(problem, watched, wanted):
-    """Allocate them, or empty ones; `watched` is the number of quantities with kept peaks."""
+def make_tables(problem, watched, terms, lengths):
+    """Allocate them.
+
+    watched : number of quantities with kept peaks
+    terms : of the load in an interval, >= 2
+    lengths : number of distinct lengths of intervals; 0: no tables
+    """
     contacts, modes = problem.chi.shape
-    units, rows = _sizes(problem, watched)
+    units, rows = _sizes(problem, watched, terms)
     width, bounds = padded(rows), padded(contacts + watched)
     sets = min(1 << min(contacts, 6), _MOST_SETS)
-    sets = max(1, min(sets, _MOST_NUMBERS // (units * (width + bounds))))
-    sets = sets if wanted else 0
+    sets = max(1, min(sets, _MOST_NUMBERS // (max(1, lengths) * units * (width + bounds)))) * lengths
     return Tables(
         np.zeros((sets * units, width)), np.zeros((sets * units, bounds)), np.zeros(sets, np.int64),
+        np.zeros(lengths), np.zeros(1, np.int64),
         np.zeros(units), np.zeros(width), np.zeros(bounds), np.zeros(contacts),
         np.zeros((3, padded(max(modes, contacts)))),
     )  # fmt: skip
@@ -89,20 +116,21 @@ def make_tables(problem, watched, wanted):
 
 @kernel
 def has_tables(problem):
-    """Whether tables hold for a system: no belts, no walls that move, constant normal loads."""
+    """Whether tables hold for a system: no belts behind springs, constant normal loads."""
     possible = True
     for j in range(problem.spring.size):
-        possible = possible and problem.belt[j] == 0.0 and not varies(problem, j)
-        for d in range(problem.push.shape[1]):
-            possible = possible and problem.base[j, d] == 0.0
+        possible = possible and has_tables_of(problem, j) and not varies(problem, j)
     return possible
 
 
 @kernel
-def forget(tables):
-    """Begin anew, for another length of the interval."""
-    for s in range(tables.known.size):
-        tables.known[s] = 0
+def set_tables(tables, h):
+    """Take the tables of intervals of the length h."""
+    for i in range(tables.lengths.size):
+        if tables.lengths[i] == h or tables.lengths[i] == 0.0:
+            tables.lengths[i] = h
+            tables.place[0] = i
+            return
 
 
 @kernel
@@ -118,12 +146,12 @@ def _weighted(series, at, order):
 
 
 @kernel
-def _begin_with(problem, motion, unit, q):
+def _begin_with(problem, row, motion, unit, q):
     """Set one unit to 1 and all others to zero; see `Tables`."""
     begin_with(problem, motion, unit, q)
-    at = q - state_size(problem) - problem.spring.size
+    at, terms = q - state_size(problem) - problem.spring.size, row.intervals[LOAD_TERMS]
     if at >= 0:
-        motion.series[problem.push.shape[0] + at // PIECE_TERMS, at % PIECE_TERMS] = 1.0
+        motion.series[problem.push.shape[0] + at // terms, at % terms] = 1.0
 
 
 @kernel
@@ -134,7 +162,10 @@ def _fill_unit(problem, row, motion, kept, tables, at):
     parts, bounds, series = tables.parts, tables.bounds, motion.series
     place = size
     for j in range(contacts):
-        source = first_contact_row(problem) + (1 if motion.sense[j] != 0 else 2) * contacts + j
+        source = first_contact_row(problem) + 2 * contacts + j
+        if motion.sense[j] != 0:
+            source -= contacts
+            series[source, 0] += row.numbers[H] * problem.belt[j]
         slope = 0.0
         for k in range(1, TERMS):
             slope += k * series[source, k]
@@ -150,15 +181,26 @@ def _fill_unit(problem, row, motion, kept, tables, at):
         parts[at, place + i] = value_at(motion.scratch, VALUE, 1.0)
         bounds[at, contacts + i] = _OVERSHOOT * _weighted(motion.scratch, VALUE, 2)
     place += kept.weights.shape[0]
+    terms = row.intervals[LOAD_TERMS]
     for d in range(channels):
         fill_pushed(problem, motion, d)
-        for i in range(PIECE_TERMS - 1):
-            sum_ = 0.0
-            for k in range(LONG):
-                sum_ += motion.scratch[VALUE, k] / (i + k + 1.0)
-            parts[at, place + i] = sum_
-        place += PIECE_TERMS - 1
+        _fill_moments(motion.scratch[VALUE], terms, parts, at, place)
+        place += terms - 1
+    for j in range(contacts):
+        if _has_moving_wall(problem, j):
+            _fill_moments(series[force_row(problem, j)], terms, parts, at, place)
+            place += terms - 1
     _fill_change(problem, motion, parts, at)
+
+
+@kernel
+def _fill_moments(values, terms, parts, at, place):
+    """Fill the integrals of a series times 1, x, ... x^(terms - 2)."""
+    for i in range(terms - 1):
+        sum_ = 0.0
+        for k in range(LONG):
+            sum_ += values[k] / (i + k + 1.0)
+        parts[at, place + i] = sum_
 
 
 @kernel
@@ -189,7 +231,7 @@ def _fill_set(problem, row, motion, kept, tables, slot):
         for i in range(motion.state.shape[1]):
             tables.state[part, i] = motion.state[part, i]
     for q in range(count):
-        _begin_with(problem, motion, unit, q)
+        _begin_with(problem, row, motion, unit, q)
         expand(problem, row, unit, 0.0, -1, motion, True)
         _fill_unit(problem, row, motion, kept, tables, slot * count + q)
     for part in range(3):
@@ -205,7 +247,8 @@ def _slot(problem, row, motion, kept, tables):
     for j in range(motion.sense.size):
         if motion.sense[j] == 0:
             held += 1 << j
-    slot = held % tables.known.size
+    sets = tables.known.size // tables.lengths.size
+    slot = tables.place[0] * sets + held % sets
     if tables.known[slot] != held + 1:
         _fill_set(problem, row, motion, kept, tables, slot)
         tables.known[slot] = held + 1
@@ -217,6 +260,7 @@ def _put_units(problem, row, friction, motion, units):
     """Put the state, the friction forces and the terms of the load in one row."""
     modes, channels = problem.push.shape
     size, contacts = state_size(problem), problem.spring.size
+    terms = row.intervals[LOAD_TERMS]
     for m in range(modes):
         units[m] = motion.state[Q, m]
         units[modes + m] = motion.state[P, m]
@@ -225,8 +269,8 @@ def _put_units(problem, row, friction, motion, units):
     for j in range(contacts):
         units[size + j] = motion.sense[j] * friction.kinetic[j]
     for d in range(channels):
-        for k in range(PIECE_TERMS):
-            units[size + contacts + d * PIECE_TERMS + k] = row.loads[d, k]
+        for k in range(terms):
+            units[size + contacts + d * terms + k] = row.loads[d, k]
 
 
 @inner_kernel
@@ -247,17 +291,17 @@ def _add_up(tables, slot):
 
 
 @inner_kernel
-def _stays(friction, motion, tables, first, j):
-    """Whether what is watched in contact j stays inside its limits."""
+def _stays(friction, motion, tables, first, j, belt):
+    """Whether what is watched in contact j stays inside its limits; belt : its way in the interval."""
     sums = tables.sums
     low, high = math.inf, -math.inf
     for i in range(4):
         low, high = min(low, sums[first + 4 * j + i]), max(high, sums[first + 4 * j + i])
     bound = tables.most[j]
     if motion.sense[j] > 0:
-        return low > bound
+        return low - belt > bound
     if motion.sense[j] < 0:
-        return high < -bound
+        return high - belt < -bound
     limit = friction.static[j] - bound
     return low > -limit and high < limit
 
@@ -285,7 +329,7 @@ def pass_by_tables(problem, row, friction, motion, counts, kept, tables):
     _add_up(tables, slot)
     size = state_size(problem)
     for j in range(contacts):
-        if not _stays(friction, motion, tables, size, j):
+        if not _stays(friction, motion, tables, size, j, row.numbers[H] * problem.belt[j]):
             return False
     first = size + 4 * contacts
     for i in range(kept.weights.shape[0]):
@@ -301,6 +345,70 @@ def pass_by_tables(problem, row, friction, motion, counts, kept, tables):
 
 
 @inner_kernel
+def _rise(problem, row, units, d):
+    """Change of a channel over the interval."""
+    first = state_size(problem) + problem.spring.size + d * row.intervals[LOAD_TERMS]
+    sum_ = 0.0
+    for i in range(1, row.intervals[LOAD_TERMS]):
+        sum_ += units[first + i]
+    return sum_
+
+
+@inner_kernel
+def _slide(problem, row, tables, j):
+    """Way of contact j relative to its wall."""
+    way = -row.numbers[H] * problem.belt[j]
+    for m in range(problem.chi.shape[1]):
+        way += problem.chi[j, m] * tables.sums[m]
+    for d in range(problem.push.shape[1]):
+        if problem.base[j, d] != 0.0:
+            way -= problem.base[j, d] * _rise(problem, row, tables.units, d)
+    return way
+
+
+@inner_kernel
+def _rate_moment(problem, row, tables, d, at):
+    """Integral of the derivative of a channel times what has its moments from the row `at` on."""
+    first = state_size(problem) + problem.spring.size + d * row.intervals[LOAD_TERMS]
+    sum_ = 0.0
+    for i in range(row.intervals[LOAD_TERMS] - 1):
+        sum_ += (i + 1.0) * tables.units[first + i + 1] * tables.sums[at + i]
+    return sum_
+
+
+@kernel
+def _add_works(problem, row, friction, motion, kept, tables):
+    """Add the works of the load and of walls that move; see `kept` for those of a step.
+
+    Parameters
+    ----------
+    problem, row, friction, motion, kept, tables : see `pass_by_tables`
+    """
+    contacts, modes = problem.chi.shape
+    channels, terms = problem.push.shape[1], row.intervals[LOAD_TERMS]
+    size, sums, units = state_size(problem), tables.sums, tables.units
+    at = size + 4 * contacts + kept.weights.shape[0]
+    for d in range(channels):
+        start, gain = 0.0, 0.0
+        for m in range(modes):
+            start += problem.push[m, d] * units[m]
+            gain += problem.push[m, d] * sums[m]
+        before = units[size + contacts + d * terms]
+        after = before + _rise(problem, row, units, d)
+        work = after * (start + gain) - before * start - _rate_moment(problem, row, tables, d, at)
+        kept.works[OF_LOAD] += work
+        at += terms - 1
+    for j in range(contacts):
+        if not _has_moving_wall(problem, j):
+            continue
+        for d in range(channels):
+            if problem.base[j, d] != 0.0:
+                kept.works[OF_BASE] -= problem.base[j, d] * _rate_moment(problem, row, tables, d, at)
+        kept.record.works[OF_WALL, j] -= sums[at] * row.numbers[H] * problem.belt[j]
+        at += terms - 1
+
+
+@inner_kernel
 def _take(problem, row, friction, motion, counts, kept, tables):
     """Move the state, and add what is summed over the motion.
 
@@ -309,29 +417,15 @@ def _take(problem, row, friction, motion, counts, kept, tables):
     problem, row, friction, motion, counts, kept, tables : see `pass_by_tables`
     """
     contacts, modes = problem.chi.shape
-    channels = problem.push.shape[1]
     size, sums, units = state_size(problem), tables.sums, tables.units
-    moments = size + 4 * contacts + kept.weights.shape[0]
-    for d in range(channels):
-        start, gain = 0.0, 0.0
-        for m in range(modes):
-            start += problem.push[m, d] * units[m]
-            gain += problem.push[m, d] * sums[m]
-        first = size + contacts + d * PIECE_TERMS
-        work, total = 0.0, units[first]
-        for i in range(PIECE_TERMS - 1):
-            work -= (i + 1.0) * units[first + i + 1] * sums[moments + d * (PIECE_TERMS - 1) + i]
-            total += units[first + i + 1]
-        kept.works[OF_LOAD] += work + total * (start + gain) - units[first] * start
+    _add_works(problem, row, friction, motion, kept, tables)
     for j in range(contacts):
         kept.forces[j] = motion.sense[j] * friction.kinetic[j]
         if motion.sense[j] != 0:
-            way = 0.0
-            for m in range(modes):
-                way += problem.chi[j, m] * sums[m]
-            kept.record.distance[j] += abs(way)
-            kept.record.works[OF_FRICTION, j] += abs(way) * friction.kinetic[j]
-            kept.slides[PRESENT, j] += abs(way)
+            way = abs(_slide(problem, row, tables, j))
+            kept.record.distance[j] += way
+            kept.record.works[OF_FRICTION, j] += way * friction.kinetic[j]
+            kept.slides[PRESENT, j] += way
             kept.slides[LARGEST, j] = max(kept.slides[LARGEST, j], kept.slides[PRESENT, j])
         else:
             kept.forces[j] = sums[size + 4 * j + 3]

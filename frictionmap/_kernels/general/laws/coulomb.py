@@ -60,6 +60,14 @@ def _limit_reached(motion, force, nu, size, sign, shift):
 
 
 @inner_kernel
+def reaches(problem, friction, motion, j, sign):
+    """First x in the present step at which the force of a held contact is at one side of its range."""
+    shift = max(0, sign * motion.fresh[j])
+    force, nu = force_row(problem, j), normal_row(problem, j)
+    return _limit_reached(motion, force, nu, friction.static[j], float(sign), shift)
+
+
+@inner_kernel
 def first_event(problem, friction, motion, j):
     """Return (x, side) of the first event of a contact in the present step; x = NONE without one.
 
@@ -74,10 +82,8 @@ def first_event(problem, friction, motion, j):
     found, side = NONE, 0
     if motion.idle[j]:
         return found, side
-    force, nu = force_row(problem, j), normal_row(problem, j)
     for sign in (1, -1):
-        shift = max(0, sign * motion.fresh[j])
-        x = _limit_reached(motion, force, nu, friction.static[j], float(sign), shift)
+        x = reaches(problem, friction, motion, j, sign)
         if x < found:
             found, side = x, sign
     return found, side

@@ -315,7 +315,7 @@ plot ''
 export ''
     cannot read .: it is not a file; give a file written by frictionmap
 plot map.nc -o map.gif
-    cannot write a map as a moving picture: only responses move; use .png, .pdf, .svg
+    cannot write a map as a moving picture: only responses and histories move; use .png, .pdf, .svg
 plot map.nc --quantity amplitude
     unknown quantity 'amplitude' in a file of kind map; valid: regimes
 plot map.nc --log

@@ -101,7 +101,7 @@ def animate(
         raise InputError("cannot use panels with animate: its panels belong together; omit panels")
     with used(checked), sizes(checked):
         ds = to_draw(ds, "animate", "response", "history")
-        axes, moving = _of_record(ds) if kind(ds) == "history" else _of_response(ds)
+        axes, moving = _record_stage(ds) if kind(ds) == "history" else _response_stage(ds)
         finish(axes, checked)
         figure = axes[0].figure
         figure.draw_without_rendering()
@@ -125,7 +125,7 @@ def _frames(time: np.ndarray, count: int) -> np.ndarray:
     return np.searchsorted(time, moments, side="right") - 1
 
 
-def _of_response(ds: xr.Dataset) -> tuple[np.ndarray, _Moving]:
+def _response_stage(ds: xr.Dataset) -> tuple[np.ndarray, _Moving]:
     """Draw everything of a steady state that stays, and the first frame."""
     check_holds(ds, ("z", "x", "friction", "direction"), "its motion")
     check_can_be_seen(ds, ("z", "x", "friction"))
@@ -140,7 +140,7 @@ def _of_response(ds: xr.Dataset) -> tuple[np.ndarray, _Moving]:
     return np.array([stage, history, loop], dtype=object), moving
 
 
-def _of_record(ds: xr.Dataset) -> tuple[np.ndarray, _Moving]:
+def _record_stage(ds: xr.Dataset) -> tuple[np.ndarray, _Moving]:
     """Draw everything of a motion under a record that stays, and the first frame: in SI units if known."""
     one = single_motion(ds)
     length, force = (values_in_si(one, *of)[1] for of in (("z", "m", "m"), ("friction", "N", "N")))

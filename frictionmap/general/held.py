@@ -206,6 +206,41 @@ def half_range(forces: Mapping[int, np.ndarray]) -> np.ndarray:
     return 0.5 * (high + low)
 
 
+def _instants_without_load(normal: Mapping[int, complex]) -> np.ndarray:
+    """Phases at which a normal load vanishes, to rounding.
+
+    Least values up to `_ROUNDING` count: a contact under them is held by some friction above `_ENDLESS` only.
+    """
+    n, nu = np.array(sorted(normal), dtype=float), np.array([normal[k] for k in sorted(normal)])
+    count = _SAMPLES * int(n.max())
+    tau = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    values = (nu * np.exp(1j * tau[:, np.newaxis] * n)).real.sum(axis=1)
+    tau = tau[(values <= np.roll(values, 1)) & (values <= np.roll(values, -1))]
+    step = np.pi / count
+    for _ in range(_REFINED):
+        terms = nu * np.exp(1j * tau[:, np.newaxis] * n)
+        slope, bend = -(n * terms.imag).sum(axis=1), -(n**2 * terms.real).sum(axis=1)
+        move = np.where(bend > 0.0, -slope / np.where(bend > 0.0, bend, 1.0), -np.sign(slope) * step)
+        tau = tau + np.clip(move, -step, step)
+    least = 1.0 + (nu * np.exp(1j * tau[:, np.newaxis] * n)).real.sum(axis=1)
+    return tau[least <= _ROUNDING * (1.0 + np.abs(nu).sum())]
+
+
+def _is_loaded_without(n: np.ndarray, load: np.ndarray, instants: np.ndarray, placed: bool) -> np.ndarray:
+    """Whether no friction holds a contact whose normal load vanishes at these instants, (n_r,).
+
+    Next to an instant the normal load is of second order: the force that holds the contact must be zero
+    there, up to a constant if it is `placed`, with its slope.
+    """
+    terms = load[:, np.newaxis, :] * np.exp(1j * instants[:, np.newaxis] * n)
+    force, slope = terms.real.sum(axis=-1), -(n * terms.imag).sum(axis=-1)
+    if placed:
+        force = force - force[:, :1]
+    # Newton's method for nu' = 0 finds the instants to rounding; some ten of its errors add up
+    size = 1e2 * _ROUNDING * (n * np.abs(load)).sum(axis=-1)
+    return (np.maximum(np.abs(force), np.abs(slope)) > size[:, np.newaxis]).any(axis=1)
+
+
 def _least_friction(
     forces: Mapping[int, np.ndarray], normal: Mapping[int, complex], j: int, placed: bool
 ) -> np.ndarray:
@@ -222,11 +257,17 @@ def _least_friction(
     nu = np.array([normal.get(k, 0.0) for k in orders])
     infinite = ~np.isfinite(load).all(axis=-1)
     load = np.where(infinite[:, np.newaxis], 0.0, load)
+    instants = _instants_without_load(normal)
+    if instants.size:
+        infinite |= _is_loaded_without(n, load, instants, placed)
+
+    # where the normal load vanishes, the excess of a contact that can be held is zero from its friction on
+    rounding = _ROUNDING if instants.size else 0.0
 
     def excess(f: np.ndarray) -> np.ndarray:
         part = f[:, np.newaxis] * nu
         high, low = largest(n, load - part), largest(n, -load - part)
-        return (high + low if placed else 2.0 * np.maximum(high, low)) - 2.0 * f
+        return (high + low if placed else 2.0 * np.maximum(high, low)) - (2.0 + rounding) * f
 
     low = np.zeros(len(load))
     high = 0.5 * excess(low)

@@ -197,6 +197,23 @@ def test_friction_without_slip():
         assert solve(system, one, 1.001 * limit).slips_per_cycle == 0
 
 
+@pytest.mark.parametrize("kt", [None, 3.0])
+def test_normal_loads_that_vanish_at_an_instant(kt):
+    """No friction holds a contact that is loaded there; one in phase with its normal load is held by |F|."""
+    zeta, r = 0.05, np.array([0.7, 1.6])
+    held = np.ones(2) if kt is None else kt / (1.0 + kt - r**2 + 2j * zeta * r)
+    further = {"damping_ratios": zeta, "contact_stiffness": kt}
+    name = "beta_stick" if kt is None else "beta_noslip"
+    for angle in np.linspace(0.1, 6.1, 7):
+        for order in (1, 2):
+            system = fm.System(normal_load={order: np.exp(1j * angle)}, **further)
+            assert np.isinf(fm.boundaries(system, r)[name].values).all()
+    for one, force in zip(r, held, strict=True):
+        system = fm.System(normal_load={1: force / abs(force)}, **further)
+        found = fm.boundaries(system, [one])[name].values.item()
+        assert abs(found - abs(force)) < 1e-13 * abs(force)
+
+
 def test_steady_state_does_not_depend_on_the_start():
     rng = np.random.default_rng(11)
     slipped = 0

@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from pages import packet, scene_from, served
 
 import frictionmap as fm
 from frictionmap.model.friction_law import SHAPES, FrictionLaw, formula_law
+from frictionmap.pictures.classes import of_cells
 
 #: Deviations for 3, 5, 8, 12, 20 segments, from an independent calculation.
 DEVIATIONS = {
@@ -98,3 +100,17 @@ def test_boundaries_with_a_law_are_those_that_it_leaves():
     flat = fm.boundaries(fm.System(contacts=[fm.Contact()]), [0.5, 1.5])
     assert ds.beta_stick.values.tolist() == flat.beta_stick.values.tolist()
     assert "beta_lim" not in ds
+
+
+def test_the_page_shows_systems_with_a_law(tmp_path):
+    """Classes of the map are those of `sweep`; of the boundaries only that to permanent sticking is drawn."""
+    law = "law = { speed = [0.0, 0.5], factor = [1.0, 0.7] }"
+    text = f"[system]\n[[system.contacts]]\n{law}\n[grid]\nr = [0.3, 1.8]\nbeta = [0.0, 1.2]\n"
+    with served(scene_from(tmp_path, text)) as page:
+        _, arrays = packet(page, "/map?columns=4&rows=3&r=0.4,1.6&beta=0.1,0.7")
+        system = page.page.scene.system
+    ds = fm.sweep(system, [0.55, 0.85, 1.15, 1.45], [0.2, 0.4, 0.6], outputs=["regime", "stops_per_cycle"])
+    expected = of_cells(ds.regime.values[0], ds.stops_per_cycle.values[0])
+    assert arrays["classes"].tolist() == expected.tolist()
+    assert "beta_lim" not in arrays
+    assert arrays["beta_stick"] == pytest.approx(ds.beta_stick.values[0], rel=1e-12)

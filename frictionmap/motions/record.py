@@ -271,9 +271,9 @@ class Record(Shown):
         amplitude, quantity, unit
             As of `pulse`.
         more
-            `rise` and `fall`: times in which the amplitude grows from 0 at the beginning and falls to 0 at the
-            end, as 3 s^2 - 2 s^3 over the share s of the time; a displacement needs both, as the velocity of
-            the base must not jump.  And mass, vector, scale, name of `Record`.
+            `rise` and `fall`: times in which the amplitude grows from 0 at the beginning, and falls to 0 at
+            the end, as 3 s^2 - 2 s^3 over the share s of the time; a displacement needs both, as the velocity
+            of the base must not jump.  And mass, vector, scale, name of `Record`.
 
         Raises
         ------

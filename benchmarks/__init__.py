@@ -3,8 +3,8 @@
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
 NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, design, static, bound,
-large, explore, first_minute, coupling, coverage, consistency or spectrum: each is a module of that name
-in `measures`.  It prints tables, and writes JSON and perhaps a figure.
+large, explore, first_minute, coupling, coverage, consistency, spectrum or histories: each is a module of
+that name in `measures`.  It prints tables, and writes JSON and perhaps a figure.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
@@ -31,11 +31,13 @@ in `measures`.  It prints tables, and writes JSON and perhaps a figure.
   coverage                     how often the 95 % intervals of `identify` contain the true value
   consistency                  what every map of several contacts must fulfil, in random cells
   spectrum                     friction response spectra: a sample, an event, a whole spectrum
+  histories                    motions in time under records: time against error, beside other solvers
 `peers/`                       other solvers: each for one mass and for chains of masses
   solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: many cells at a time
   fixed_step                   time stepping: RK4 with sticking logic, Moreau-Jean
   moreau, harmonic_balance     several contacts by time stepping; an elastic contact by harmonic balance
   body, peer, one_mass, chain  problem, interface, and common code of these solvers
+  shaken                       motions under records: OpenSees, solve_ivp, heyoka
   contacts, periodic_load,     the same for several contacts and loads of several harmonics
   switching
 `references/`                  reference results without code of the package; the tests use them, too
@@ -52,7 +54,8 @@ in `measures`.  It prints tables, and writes JSON and perhaps a figure.
   results_page                 the tables of docs/results.md, from the committed results
   quoted_errors                tables about errors; `quoted_coverage`: about the intervals of `identify`;
                                `quoted_general`: about several contacts and periodic loads;
-                               `quoted_design`: about designs; `quoted_first_minute`: about the page
+                               `quoted_design`: about designs; `quoted_first_minute`: about the page;
+                               `quoted_histories`: about motions in time
   quoting                      format of the numbers
 `results/`                     the committed results; `results/local` has those of local runs
 =============================  ========================================================================

@@ -36,6 +36,7 @@ BENCHMARKS = (
     "coverage",
     "consistency",
     "spectrum",
+    "histories",
 )
 
 

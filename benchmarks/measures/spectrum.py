@@ -32,21 +32,38 @@ CASES = {
 }
 _ROUNDS = {False: 7, True: 1}
 
+#: A suite: records, those that are measured, periods, friction forces, samples of each record.
+SUITE = {False: (40, 4, 100, 20, 10_000), True: (2, 1, 5, 3, 200)}
 
-def record(count: int) -> Record:
+
+def record(count: int, seed: int = 1) -> Record:
     """Coloured noise with the largest modulus 1."""
-    noise = np.random.default_rng(1).standard_normal(count)
+    noise = np.random.default_rng(seed).standard_normal(count)
     values = np.convolve(noise, np.exp(-np.arange(40) / 8.0), "same")
     return Record(values / np.abs(values).max(), dt=STEP)
 
 
-def measured(given: Record, periods: object, friction: np.ndarray, rounds: int) -> tuple[dict, float]:
+def measured(
+    given: Record | list[Record], periods: object, friction: np.ndarray, rounds: int
+) -> tuple[dict, float]:
     """Seconds of a spectrum, and its events."""
     runs = [
         timed(lambda: spectrum(given, periods, friction, damping=0.05, threads=1)) for _ in range(rounds + 1)
     ]
     ds = runs[-1][1]
     return spread([seconds for seconds, _ in runs[1:]]), float(2 * ds.stops.sum() + ds.turns.sum())
+
+
+def suite(quick: bool) -> dict:
+    """Seconds of a suite of records: some are measured, and their time is scaled to all."""
+    count, some, periods, friction, samples = SUITE[quick]
+    given = [record(samples, seed) for seed in range(some)]
+    axes = np.geomspace(0.1, 4.0, periods), np.geomspace(0.01, 0.8, friction)
+    seconds, _ = measured(given, *axes, 1)
+    return {
+        "records": count, "measured records": some, "seconds": seconds,
+        "seconds, all": seconds["least"] * count / some,
+    }  # fmt: skip
 
 
 def run(quick: bool, results: Path) -> dict:
@@ -59,6 +76,7 @@ def run(quick: bool, results: Path) -> dict:
             for name, case in CASES.items()
         }
         whole, _ = measured(given, PERIODS, FRICTION, rounds)
+        records = suite(quick)
     rows, cells = {}, SAMPLES[quick] * CELLS
     quiet = found["sliding"][0]["least"] / cells
     for name, (seconds, events) in found.items():
@@ -72,6 +90,7 @@ def run(quick: bool, results: Path) -> dict:
         [(n, row["ns_a_sample"], row["events_a_sample"], row["ns_an_event"]) for n, row in rows.items()],
     )
     print(f"{PERIODS.size} periods, {FRICTION.size} friction forces, {SAMPLES[quick]} samples: {whole}")
-    content = {"one period": rows, "spectrum": whole, "samples": SAMPLES[quick]}
+    print(f"suite: {records}")
+    content = {"one period": rows, "spectrum": whole, "suite": records, "samples": SAMPLES[quick]}
     save("spectrum", content, results)
     return content

@@ -19,6 +19,7 @@ heyoka_batch      heyoka on many cells at a time
 cvode             CVODE of SUNDIALS
 fixed_step        RK4 with sticking logic, Moreau-Jean
 moreau            Moreau-Jean time stepping for several contacts
+shaken            motions under records, one contact: OpenSees, scipy and heyoka with events
 harmonic_balance  harmonic balance with alternating frequency and time for one elastic contact
 ================  ===========================================================================================
 """

@@ -17,6 +17,7 @@ from .quoted_design import design_lines
 from .quoted_errors import accuracy_lines, steady_lines, stress_lines
 from .quoted_first_minute import first_minute_lines
 from .quoted_general import consistency_lines, general_lines
+from .quoted_histories import histories_lines
 from .quoting import duration, markdown, rounded_off, two_digits
 
 PAGE = ROOT / "docs" / "results.md"
@@ -30,6 +31,8 @@ QUOTED = (
     "general",
     "consistency",
     "design",
+    "histories",
+    "spectrum",
     "accuracy",
     "stress",
     "steady",
@@ -394,6 +397,8 @@ def block(results: Path) -> str:
         lines += consistency_lines(found["consistency"])
     if "design" in found:
         lines += design_lines(found["design"])
+    if "histories" in found or "spectrum" in found:
+        lines += histories_lines(found.get("histories"), found.get("spectrum"))
     for name, quote in (("accuracy", accuracy_lines), ("stress", stress_lines), ("steady", steady_lines)):
         if name in found:
             lines += quote(found[name])

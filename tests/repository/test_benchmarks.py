@@ -15,7 +15,8 @@ from conftest import ROOT
 from measuring import WITHOUT_FIGURE, python, spreads
 
 from benchmarks.__main__ import BENCHMARKS
-from benchmarks.measures import first_minute
+from benchmarks.measures import first_minute, histories
+from benchmarks.peers.shaken import ScipyShaken
 from benchmarks.report import quoting, record, results_page
 
 RESULTS = ROOT / "benchmarks" / "results"
@@ -158,6 +159,25 @@ def test_committed_general_solvers_had_our_answers():
             assert max(point["relative errors of ranges"]) < 1e-8
     medians = [point["median relative error of Z"] for point in content["harmonic balance"]["points"]]
     assert medians == sorted(medians, reverse=True)
+
+
+def test_committed_histories_had_our_answers():
+    """heyoka agrees to rounding; Newmark's method converges to the elastic contact as its step squared."""
+    content = json.loads((RESULTS / "histories.json").read_text())
+    for scene in content["scenes"].values():
+        found = scene["other solvers"]
+        assert found["heyoka"]["points"][-1]["error"] < 1e-11
+        for stiffness in (3, 30, 1000):
+            errors = [point["error"] for point in found[f"OpenSeesPy, kt/k_1 = {stiffness}"]["points"]]
+            assert all(coarse / fine > 8.0 for coarse, fine in pairwise(errors[1:]))
+
+
+@pytest.mark.parametrize("masses", [1, 2])
+def test_a_solver_with_events_has_our_history(masses):
+    given = histories.body(masses, histories.PEAK * histories.noise(61))
+    _, expected = histories.ours(given, None, 1)
+    found = ScipyShaken(given, 1e-11).run()
+    assert histories.difference(found, expected) < 1e-9
 
 
 def test_committed_scaling_had_the_same_answers():

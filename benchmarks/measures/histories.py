@@ -3,7 +3,8 @@
 One mass (period 0.8 s, damping ratio 0.05) and a frame of two storeys with a brace that rubs, under 1,000
 samples of 0.02 s.  The error is the largest difference of a displacement at the samples, over the largest
 displacement.  Solvers with events are compared with frictionmap's rigid contact, OpenSees with frictionmap's
-elastic contact of the same stiffness; the difference of the two is given, too.  Times are those of complete calls.
+elastic contact of the same stiffness; the difference of the two is given, too.  Times are those of
+complete calls.
 """
 
 from collections.abc import Iterator

@@ -16,6 +16,8 @@ from .files.template import section_text
 from .identify.chain.estimates import chain_names
 from .identify.chain.two_masses import log_amplitude
 from .identify.decay.motion import Decay, displacement
+from .identify.history.drive import Drive
+from .identify.history.model import NAMES, Measured, Model
 from .identify.parameters import ALIKE, CONTACT_STIFFNESS
 from .identify.rigs.keys import TABLES, rig_keys
 from .identify.signals.phasors import harmonics_at
@@ -32,10 +34,11 @@ TRUTHS: Mapping[str, Mapping[str, float]] = {
     "loop": {"friction": 60.0, "contact_stiffness": 150.0, "offset": 2.0},
     "forced-spring": {"beta_1": 0.4, "beta_2": 0.8, "f_n": 3.12, "zeta": 0.008, "contact_stiffness": 3.0},
     "record-spring": {"f_n": 3.12, "zeta": 0.008, "x_F": 0.9, "contact_stiffness": 3.0, "offset_x": -0.1},
+    "record-runup": {"f_n": 3.12, "zeta": 0.012, "x_F": 0.6, "offset_x": 0.2},
 }
 
-#: Kind of data of those with a spring in the contact; the others are called after it.
-_KINDS = {"forced-spring": "forced", "record-spring": "record"}
+#: Kind of data of those that are not called after it.
+_KINDS = {"forced-spring": "forced", "record-spring": "record", "record-runup": "record"}
 
 #: Samples of a decay: rate [1/s], length [s], error [mm].
 _RATE, _LENGTH, _DECAY_ERROR = 200, 4, 0.03
@@ -48,6 +51,9 @@ _BASE, _LAG_ERROR, _AMPLITUDE_ERROR = 1.75, 0.7, 0.01
 _SHAKEN_AT, _HARMONICS = 1.0, (0.0, 1.75, 0.018j)
 _RECORD_RATE, _RECORD_LENGTH, _RECORD_ERRORS = 100, 8, (0.01, 0.003)
 _SPRING_LENGTH = 4
+
+#: Frequencies [Hz] and amplitude [mm] of a base whose frequency rises; samples, and errors as of a record.
+_RISING, _RISING_AMPLITUDE, _RISING_SAMPLES = (1.0, 5.0), 1.2, 500
 
 #: Rate [1/s] and number of samples of a damper test, steps between two of them; amplitude [mm]; errors
 #: [mm, N].
@@ -191,6 +197,25 @@ stiffness = 1191.0        # N/m: friction forces in N, and the stiffness of the 
 free = ["beta", "f_n", "zeta", "contact_stiffness"]
 """,
     ),
+    "record-runup": (
+        "One storey on a base whose frequency rises",
+        """
+[system]
+contact = "fixed-wall"
+excitation = "base"
+damping_reference = "base"
+
+[known]
+mu = 1.0
+stiffness = 1191.0        # N/m: the friction force in N
+
+[fit]
+method = "history"        # a base of any shape
+sigma_x = 0.01            # noise of the mass, and of the base
+sigma_drive = 0.003
+free = ["f_n", "zeta", "x_F", "offset_x"]
+""",
+    ),
     "record-spring": (
         "One storey on a shaken base, with a spring in the contact",
         """
@@ -283,6 +308,23 @@ def _record(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
     return _table("time_s,base_mm,x_mm", (time, "g"), (channels[1], ".4f"), (channels[0], ".4f"))
 
 
+def _run_up(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
+    """Simulate one mass on a base whose frequency rises, from rest, and measure base and mass."""
+    time = np.arange(_RISING_SAMPLES) / _RECORD_RATE
+    first, last = _RISING
+    turns = first * time + 0.5 * (last - first) * time**2 / time[-1]
+    base = _RISING_AMPLITUDE * np.sin(2.0 * np.pi * turns)
+    drive = Drive(time, base, 0, False, True, np.ones(time.size, dtype=bool))
+    known = {**dict.fromkeys(NAMES, 0.0), "mu": 1.0, "gain": 1.0, "stiffness": 1.0, **truth}
+    model = Model(Measured(drive, time, base, 0, False))
+    x = model.course(np.array([known[name] for name in NAMES])).x
+    channels = [
+        places + rng.normal(0.0, error, time.size)
+        for places, error in zip((x, base), _RECORD_ERRORS, strict=True)
+    ]
+    return _table("time_s,base_mm,x_mm", (time, "g"), (channels[1], ".4f"), (channels[0], ".4f"))
+
+
 def _loop(rng: np.random.Generator, truth: Mapping[str, float]) -> str:
     """Simulate a damper that follows a cosine: the spring's force is added up, and friction limits it."""
     time = np.arange(_LOOP_SAMPLES * _LOOP_FINE) / (_LOOP_RATE * _LOOP_FINE)
@@ -318,6 +360,7 @@ _TABLES: Mapping[str, Callable[[np.random.Generator, Mapping[str, float]], str]]
     "forced-spring": _forced,
     "record-spring": _record,
     "loop": _loop,
+    "record-runup": _run_up,
 }
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ time_series   `record`: steady motion of one mass in time, on a measured base
 joint_fit     `joint`: several decays and records at once
 chain         `sweep`: chains of masses without friction, base shaken
 loop          `loop`: force of a damper over a given motion
+history       `history`: motion of one mass under a base or force of any shape
 likelihood    `log_likelihood`: the likelihood of the data of a fit, for samplers
 rigs          configurations of rigs, for the command `identify`
 ============  ==========================================================================
@@ -23,6 +24,7 @@ rigs          configurations of rigs, for the command `identify`
 
 from .chain.sweep import sweep
 from .decay.free_decay import free_decay
+from .history.history import history
 from .joint_fit.joint import joint
 from .likelihood import log_likelihood
 from .loop.loop import loop
@@ -36,6 +38,7 @@ __all__ = [
     "forced",
     "free_decay",
     "friction_ratio",
+    "history",
     "joint",
     "log_likelihood",
     "loop",

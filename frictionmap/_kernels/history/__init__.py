@@ -13,5 +13,6 @@ spectrum_lanes   eight oscillators of one mass through samples without events
 spectrum_sample  one of them through a sample with events
 spectrum_rest    one of them after the record, until it rests
 spectrum         peaks and stops of eight oscillators under a record
+tangents         one mass under cubic pieces, with the derivatives of its motion
 ===============  ====================================================================
 """

@@ -32,7 +32,7 @@ _DIFFERENT = 1e-3
 
 
 class Noise(NamedTuple):
-    """What is known of the noise, in the units of the model."""
+    """Standard deviations of noise, in the units of the model; None: from the record."""
 
     sigma_x: float | None
     sigma_drive: float | None
@@ -105,9 +105,7 @@ def _masked(model: Model, held: np.ndarray, best: Solution, mask: int) -> tuple[
     return keep, best
 
 
-def _at_rest(
-    model: Model, held: np.ndarray, best: Solution, keep: np.ndarray
-) -> tuple[np.ndarray, Solution]:
+def _at_rest(model: Model, held: np.ndarray, best: Solution, keep: np.ndarray) -> tuple[np.ndarray, Solution]:
     """Hold the speed at the beginning at 0 if that explains the record as well."""
     resting = held.copy()
     resting[SPEED] = 0.0

@@ -127,7 +127,7 @@ class Model:
         """Derivatives of what the sensor shows by all parameters."""
         motion, values, found = course.motion, course.values, course.found
         added = np.zeros((course.of.lengths.size, 3, len(NAMES)))
-        added[:, :, : VALUES] = motion.carry[:, :, 7:]
+        added[:, :, :VALUES] = motion.carry[:, :, 7:]
         added[:, :, F_N] *= _TURN
         if self.given.drive.is_force:
             by_scale = np.einsum("kij,kj->ki", motion.carry[:, :, 3:7], found)

@@ -79,7 +79,7 @@ def _likely(residual: np.ndarray, square: np.ndarray) -> float:
 
 
 def frequencies(time: np.ndarray) -> tuple[float, float]:
-    """Natural frequencies [Hz] that a record can show: a fifth of a cycle in it, two samples a cycle."""
+    """Natural frequencies [Hz] that a record can show: a fifth of a cycle in it, two samples per cycle."""
     return 0.2 / float(time[-1] - time[0]), 0.5 / float(np.median(np.diff(time)))
 
 

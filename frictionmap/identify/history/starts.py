@@ -19,7 +19,7 @@ _MU, _SPRINGS = 1.1, (1.0, 4.0, 16.0)
 #: Damping of the motion without friction, which stands for that by friction.
 _DAMPINGS = (0.03, 0.1, 0.3)
 
-#: Steps of a search for the frequency, and samples a cycle of the highest.
+#: Steps of a search for the frequency, and samples per cycle of the highest.
 _RATIO, _LEAST_SAMPLES = 1.06, 8.0
 
 #: Evaluations of a descent that only shows which starts are worth following, and how many of these.
@@ -76,7 +76,7 @@ def _starts(model: Model, held: np.ndarray) -> list[np.ndarray]:
     base = model.given.drive.values[0] if model.given.drive.joined and model.given.order == 0 else 0.0
     usual[OFFSET], usual[PLACE], usual[SPEED] = offset, place - shift - base, speed
     springs = _SPRINGS if model.given.elastic and np.isnan(held[SPRING]) else (0.0,)
-    result = []
+    result: list[np.ndarray] = []
     for factor, friction, spring in product(_FREQUENCIES, _FRICTIONS, springs):
         start = usual.copy()
         start[[F_N, X_F, MU, SPRING]] = factor * f_n, friction * size, _MU, spring

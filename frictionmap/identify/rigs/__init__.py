@@ -6,6 +6,7 @@ module         what is in it
 rig            configuration of a rig, and the description of a kind of data
 decay          free decays from the file of a rig
 forced         forced responses from the file of a rig
+history        records of any shape from the file of a rig
 record         records of steady motion from the file of a rig
 joint          several decays and records from the files of a rig
 sweep          sweeps from the file of a rig

@@ -12,14 +12,15 @@ from ...files.key import several, word
 from ...files.keys import KEYS
 from ...model.system import DAMPING_REFERENCES
 from ...units.table import COLUMN_NAMES, conversion
+from ..parameters import Parameter
 from ..signals.integration import Displacements, derivative_order, displacements
 from ..signals.samples import within
 from ..tables.columns import Column, check_increasing, pick_columns
 from ..tables.files import Table
 from ..time_series.motion import CONTACTS
 from ..time_series.record import FITTABLE, record
+from .history import EXCITATION, METHOD, METHODS, OPTIONS, record_by_history
 from .rig import (
-    BASE,
     LOSS,
     REFERENCE,
     STIFFNESS,
@@ -41,6 +42,16 @@ SYSTEM_KEYS = ("contact", "damping_reference", "excitation", "contact_masses")
 
 
 def _record(rig: Rig, table: Table) -> xr.Dataset:
+    method = checks.choice(rig.fit.get(METHOD.name, METHODS[0]), "fit.method", METHODS)
+    return _steady(rig, table) if method == METHODS[0] else record_by_history(rig, table)
+
+
+def _steady(rig: Rig, table: Table) -> xr.Dataset:
+    for key in OPTIONS:
+        if key.name in rig.fit:
+            raise InputError(
+                f"cannot use fit.{key.name} with steady motions: add fit.method = 'history', or remove it"
+            )
     contact, reference = one_mass_on_base(rig)
     check_columns(rig, tuple(_WANTED))
     picked = pick_columns(table, _WANTED, rig.columns, rig.missing)
@@ -49,7 +60,7 @@ def _record(rig: Rig, table: Table) -> xr.Dataset:
     unit = "mm" if derivative_order(COLUMN_NAMES[x.unit]) else x.unit
     known = in_unit(rig.known, unit)
     stiffness = known.pop("stiffness", None)
-    options: dict[str, Any] = dict(rig.fit)
+    options: dict[str, Any] = {key: value for key, value in rig.fit.items() if key != METHOD.name}
     with naming(f"file {rig.file}, columns {time.name}, {base.name} and {x.name}"):
         times, found = _displaced(time, base, x, unit, rig.data.get("window"))
         ds = record(
@@ -108,18 +119,22 @@ def one_mass_on_base(rig: Rig) -> tuple[str, str]:
 
 _CONTACT, _MASSES, *_ = KEYS["system"]
 
+#: A parameter of records under a force, which is reported in N/mm.
+_STIFFNESS = {"stiffness": Parameter("spring stiffness; fitted of records under a force", "12.0", "N/m")}
+
 RECORD = Kind(
     _record,
-    named(*FITTABLE),
+    named(*FITTABLE) | _STIFFNESS,
     known=STIFFNESS,
     data=(WINDOW,),
-    fit=(LOSS,),
+    fit=(LOSS, METHOD, *OPTIONS),
     system=(
         _CONTACT._replace(valid=word(*CONTACTS)),
         _MASSES._replace(meaning="the mass in contact", valid=several({"const": 1}, maxItems=1), words="[1]"),
-        BASE,
+        EXCITATION,
         REFERENCE,
     ),
+    optional=("offset_x", "stiffness"),
     examples={
         "columns": '{ time = "time_s", base = "base_mm", x = "x_mm" }',
         "free": '["f_n", "zeta", "x_F", "mu", "offset_x"]',

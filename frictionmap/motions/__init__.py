@@ -19,6 +19,7 @@ structure        a system under channels as arrays for the kernels, and what is 
 starts           states at the beginning: at rest, given, or where another motion ended
 cells            the motions of a grid of records, scales and friction, on several threads
 dataset          `history`: motions in time as labelled variables
+bounds           how far motions with other friction, or under another record, can be
 choice           `least_median`: the friction with the least median of a peak over records
 lanes            oscillators with friction under one record, eight at a time
 elastic_spectra  spectra of one mass whose contact has a spring

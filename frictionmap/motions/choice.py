@@ -10,6 +10,7 @@ from .. import checks
 from ..errors import InputError
 from ..model.system import System
 from ..units.scales import Units
+from .bounds import BOUNDED, friction_bounds
 from .dataset import history
 from .record import Record
 from .scaling import friction_ratios, motion_scales
@@ -65,7 +66,10 @@ def least_median(
     -------
     xarray.Dataset
         `beta`, `peak`, and `peak_of_record` there; `peak_of_beta` over `beta_search`; `peak_of_offset` with
-        20 % less and more friction; `local_minima` (beta, peak).
+        20 % less and more friction; `local_minima` (beta, peak).  `least_between`: what the quantile cannot
+        fall below between a value of `beta_search` and the next one; `missed_at_most`: how much lower than
+        `peak` it can be between them.  Both are bounds from the energy of the difference of two motions, for
+        mu = 1; NaN of accelerations and forces, which jump with the friction force.
 
     Raises
     ------
@@ -79,14 +83,20 @@ def least_median(
         raise InputError("beta", f"must be two values of friction, from and to; got {checks.one_line(beta)}")
     options: dict[str, Any] = {"mu": mu, "units": units, "after": after, "threads": threads}
 
-    def peaks(friction: np.ndarray) -> np.ndarray:
-        ds = history(system, records, beta=friction, samples="none", beta_hold=False, **options)
-        values = abs(ds[quantity].isel(scale=0, mu=0))
+    def of_one(values: xr.DataArray) -> np.ndarray:
+        """The values of the mass or the contact, (record, beta)."""
+        values = values.isel(scale=0, mu=0)
         if "dof" in values.dims:
-            values = values.sel(dof=system.dofs.number(mass, "mass"))
+            values = values.isel(dof=system.dofs.number(mass, "mass") - 1)
         elif "contact" in values.dims:
-            values = values.sel(contact=contact)
+            values = values.isel(contact=contact - 1)
         return values.transpose("record", "beta").values
+
+    def motions(friction: np.ndarray) -> xr.Dataset:
+        return history(system, records, beta=friction, samples="none", beta_hold=False, **options)
+
+    def peaks(friction: np.ndarray) -> np.ndarray:
+        return of_one(abs(motions(friction)[quantity]))
 
     def least(friction: np.ndarray) -> np.ndarray:
         order = np.unique(friction)
@@ -94,7 +104,13 @@ def least_median(
         return found[np.searchsorted(order, friction)]
 
     grid = np.linspace(ends[0], ends[1], GRID)
-    over = least(grid)
+    first = motions(grid)
+    values = of_one(abs(first[quantity]))
+    over = np.quantile(values, quantile, axis=0)
+    bounds = np.full(values.shape, np.nan)
+    if quantity in BOUNDED:
+        bounds = of_one(friction_bounds(system, first, grid[1] - grid[0], units=units)[BOUNDED[quantity]])
+    between = np.quantile(np.maximum(values - bounds, 0.0), quantile, axis=0)[:-1]
     minima = _refined(least, grid, over)
     best = int(np.argmin(minima[1]))
     answer, peak = float(minima[0, best]), float(minima[1, best])
@@ -103,6 +119,8 @@ def least_median(
             "beta": ((), answer), "peak": ((), peak),
             "peak_of_record": ("record", peaks(np.array([answer]))[:, 0]),
             "peak_of_beta": ("beta_search", over),
+            "least_between": ("beta_search", np.append(between, np.nan)),
+            "missed_at_most": ((), np.maximum(0.0, peak - between.min())),
             "peak_of_offset": ("offset", least(answer * (1.0 + _OFFSETS))),
             "local_minima": (("value", "minimum"), minima),
         },

@@ -2,14 +2,20 @@
 
 import csv
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
 from .. import checks
 from ..errors import InputError
+from ..units.axes import has_units
 
 #: Most frequent cause of a row of another length.
 _HINT = "separate numbers by commas, use decimal points"
+
+#: A name with the unit of its column: `contact_stiffness [N/mm]`.  The number of an entry, as in
+#: `mass_ratios[2]`, has no letter.
+_WITH_UNIT = re.compile(r"(.*\S)\s*\[\s*([^\]]*[A-Za-z][^\]]*?)\s*\]")
 
 
 def put_variants(axes: object, folder: Path) -> tuple[Path, ...]:
@@ -34,8 +40,8 @@ def put_variants(axes: object, folder: Path) -> tuple[Path, ...]:
     return tuple(files)
 
 
-def _columns(path: Path, name: str) -> dict[str, list[float]]:
-    """The columns of a file by the names in its first row."""
+def _columns(path: Path, name: str) -> dict[str, list[float | str]]:
+    """The columns of a file by the names in its first row; numbers of one with a unit are texts with it."""
     try:
         with open(path, encoding="utf-8-sig", newline="") as opened:
             reader = csv.reader(opened)
@@ -45,14 +51,20 @@ def _columns(path: Path, name: str) -> dict[str, list[float]]:
         raise InputError(
             f"cannot read {name}, {path}: {reason}; give a CSV file with names in its first row"
         ) from None
-    columns: dict[str, list[float]] = {key.strip(): [] for key in header}
+    named = [_WITH_UNIT.fullmatch(key.strip()) for key in header]
+    units = {
+        found[1] if found else key.strip(): found and found[2]
+        for key, found in zip(header, named, strict=True)
+    }
+    columns: dict[str, list[float | str]] = {key: [] for key in units}
     if len(columns) < len(header):
         raise InputError(f"{name} must name every number once in its first row; got {','.join(header)}")
     for line, row in rows:
         if len(row) != len(columns):
             raise InputError(f"{name}, row {line} must have {len(columns)} numbers; got {len(row)} ({_HINT})")
         for key, text in zip(columns, row, strict=True):
-            columns[key].append(_number(text, f"{name}, row {line}, {key}"))
+            value, unit = _number(text, f"{name}, row {line}, {key}"), units[key]
+            columns[key].append(f"{text.strip()} {unit}" if unit else value)
     return columns
 
 
@@ -62,5 +74,6 @@ def _number(text: str, name: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise InputError(f"{name} must be a number; got {text!r}")
+        hint = ", whose unit belongs to the first row, as in force [N]" if has_units(text.strip()) else ""
+        raise InputError(f"{name} must be a number{hint}; got {text!r}")
     return value

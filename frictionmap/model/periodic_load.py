@@ -128,8 +128,11 @@ def number_rows(path: Path, columns: Sequence[str], name: str) -> list[dict[str,
         raise InputError(name, f": cannot read {path}: {reason}; give a CSV file") from None
     header = [word.strip() for word in lines[0]] if lines else []
     if header != list(columns):
+        without = " without units, forces over P" if any("[" in word for word in header) else ""
         raise InputError(
-            name, f"must have the columns {', '.join(columns)}; got {', '.join(header) or 'none'} in {path}"
+            name,
+            f"must have the columns {', '.join(columns)}{without}; "
+            f"got {', '.join(header) or 'none'} in {path}",
         )
     rows = []
     for number, line in enumerate(lines[1:], 2):

@@ -297,16 +297,29 @@ def axes_in_ratios(axes: Any, scales: Scales) -> Any:
     found: dict[str, Any] = {}
     for name, values in axes.items():
         if isinstance(values, Mapping) and not axis_kind(str(name)) and set(values).isdisjoint(_OF_RANGE):
-            found[name] = {
-                _axis_key(str(key))[1]: _axis_ratios(column, str(key), f"axes.{name}.{key}", scales)
-                for key, column in values.items()
-            }
-        elif axis_kind(str(name)) == "velocity" and has_units(values):
-            speed = str(name).replace("wall_velocity", "wall_speed")
-            found[speed] = _axis_ratios(values, speed, f"axes.{name}", scales)
+            found[name] = _columns_in_ratios(values, f"axes.{name}", scales)
         else:
-            found[_axis_key(str(name))[1]] = _axis_ratios(values, str(name), f"axes.{name}", scales)
+            key = _varied_key(str(name), values)
+            found[_axis_key(key)[1]] = _axis_ratios(values, key, f"axes.{name}", scales)
     return found
+
+
+def _columns_in_ratios(columns: Mapping[str, Any], name: str, scales: Scales) -> dict[str, Any]:
+    """Convert the numbers of an axis that vary together."""
+    found: dict[str, Any] = {}
+    for given, column in columns.items():
+        key = _varied_key(str(given), column)
+        ratio = _axis_key(key)[1]
+        if ratio in found:
+            raise InputError("cannot use", f"{name}.{given}", f"beside another {ratio}; omit one")
+        found[ratio] = _axis_ratios(column, key, f"{name}.{given}", scales)
+    return found
+
+
+def _varied_key(key: str, values: Any) -> str:
+    """The key that values vary: wall velocities with units are speeds, the same at all frequencies."""
+    is_speed = axis_kind(key) == "velocity" and has_units(values)
+    return key.replace("wall_velocity", "wall_speed") if is_speed else key
 
 
 def _axis_ratios(values: Any, key: str, name: str, scales: Scales) -> Any:

@@ -203,3 +203,75 @@ def test_studies_among_the_configurations(name):
     last = config.variations.at([size - 1 for size in config.variations.shape])
     ds = fm.sweep(last, config.r[::20], config.beta[::20], config.mu, solver=config.solver)
     assert (ds["regime"] >= 0).any()
+
+
+#: One mass on a belt, with a spring in its contact: r = 1 is 4.2 Hz, P = 12.5 N, k_1 = 3 N/mm.
+IN_UNITS = """\
+[system]
+damping_ratios = 0.02
+contact_stiffness = 1.0
+wall_speed = 0.5
+[units]
+natural_frequency = "4.2 Hz"
+load = "12.5 N"
+stiffness = "3 N/mm"
+[grid]
+r = [0.5]
+beta = [0.2]
+"""
+
+
+def load_varied(folder, table, content):
+    (folder / "varied.csv").write_text(content)
+    (folder / "varied.toml").write_text(IN_UNITS + table)
+    (axis,) = fm.load_config(folder / "varied.toml").variations.axes
+    return {number.text: values for number, values in zip(axis.numbers, axis.values, strict=True)}
+
+
+def test_columns_of_a_file_have_units(tmp_path):
+    content = "contact_stiffness [N/mm], wall_velocity [mm/s],damping_ratios\n3,20,0.01\n4.5,50,0.02\n"
+    found = load_varied(tmp_path, '[axes]\ndesign = { file = "varied.csv" }\n', content)
+    speed = 2 * np.pi * 4.2 * 12.5 / 3000  # omega_1 P/k_1
+    assert set(found) == {"contact_stiffness", "wall_speed", "damping_ratios"}
+    np.testing.assert_array_equal(found["contact_stiffness"], [1.0, 1.5])
+    np.testing.assert_allclose(found["wall_speed"], np.array([0.02, 0.05]) / speed, rtol=4e-16)
+    np.testing.assert_array_equal(found["damping_ratios"], [0.01, 0.02])
+
+
+def test_wall_velocities_with_units_that_vary_with_others_are_speeds(tmp_path):
+    """Over omega_1 P/k_1: the ratio over omega P/k_1 would be another one at r = 0.5."""
+    table = '[axes.design]\nwall_velocity = ["20 mm/s", "50 mm/s"]\ndamping_ratios = [0.01, 0.02]\n'
+    found = load_varied(tmp_path, table, "")
+    assert set(found) == {"wall_speed", "damping_ratios"}
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (
+            "contact_stiffness [N]\n3\n",
+            "axes.design.contact_stiffness.* such as '3 N/mm'; got '3 N': N is a unit",
+        ),
+        (
+            "contact_stiffness\n3 N/mm\n",
+            r"whose unit belongs to the first row, as in force \[N\]; got '3 N/mm'",
+        ),
+        ("damping_ratios [mm]\n0.1\n", "axes.design.damping_ratios.* must be a number; got '0.1 mm'"),
+        (
+            "wall_speed,wall_velocity [m/s]\n1,1\n",
+            "cannot use axes.design.wall_velocity beside another wall_sp",
+        ),
+        ("contact_stiffness,contact_stiffness [N/mm]\n1,3\n", "must name every number once"),
+    ],
+)
+def test_wrong_units_of_columns_are_refused(tmp_path, content, said):
+    with pytest.raises(InputError, match=said):
+        load_varied(tmp_path, '[axes]\ndesign = { file = "varied.csv" }\n', content)
+
+
+@pytest.mark.parametrize("key", ["load_file", "waveform"])
+def test_loads_of_files_are_ratios(tmp_path, key):
+    (tmp_path / "load.csv").write_text("time [s],force [N]\n0,1\n1,2\n")
+    (tmp_path / "one.toml").write_text(f'[system]\n{key} = "load.csv"\n[grid]\nr = [0.5]\nbeta = [0.2]\n')
+    with pytest.raises(InputError, match=r"without units, forces over P; got time \[s\], force \[N\] in"):
+        fm.load_config(tmp_path / "one.toml")

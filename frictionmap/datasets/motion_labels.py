@@ -107,9 +107,12 @@ MOTIONS = {
     "work_damping": _real(f"work lost in the damping, {_E}"),
     "work_walls": _real(f"work of walls that move, belts included, {_E}"),
     "energy": _real(f"energy at the end, of the springs in contacts, too, {_E}"),
-    "base_force": _size(f"largest force of the structure on its base, {_F}", comment="(K x + C x') ones"),
-    "base_force_max": _real(f"largest force of the base on the structure, {_F}"),
-    "base_force_min": _real(f"least force of the base on the structure, {_F}"),
+    "base_force": _size(
+        f"largest force of springs and dampers on the base, {_F}",
+        comment="(K x + C x') ones; without the friction of walls, which base_force of maps includes",
+    ),
+    "base_force_max": _real(f"largest force of the base on springs and dampers, {_F}"),
+    "base_force_min": _real(f"least force of the base on springs and dampers, {_F}"),
     "spring_force": _size(f"largest force in the spring below each mass of a chain, {_F}", "dof"),
     "beta_hold": Label(
         np.float64, "friction, over P, from which no contact ever moves", ("record", "scale", "mu"),

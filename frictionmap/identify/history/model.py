@@ -28,7 +28,7 @@ NAMES = (
 )  # fmt: skip
 F_N, ZETA, X_F, MU, SPRING, STIFFNESS, OFFSET, DELAY, GAIN, PLACE, SPEED, STATE_OF_SPRING = range(12)
 
-#: What is asked for; the others are the state at the beginning.
+#: Parameters with names for users; the others are the state at the beginning.
 NAMED = PLACE
 
 _TURN = 2.0 * np.pi

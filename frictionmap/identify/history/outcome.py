@@ -103,7 +103,7 @@ def _check_identifiable(fit: HistoryFit) -> None:
 
 
 def _condition(fit: HistoryFit) -> float:
-    """Least over largest singular value of the slopes, each over its length, of what is asked for."""
+    """Least over largest singular value of the slopes, each over its length."""
     slopes = fit.solution.slopes[:, fit.problem.free]
     sizes = np.linalg.svd(slopes / np.linalg.norm(slopes, axis=0), compute_uv=False)
     return float(sizes[-1] / sizes[0])

@@ -16,7 +16,7 @@ from .model import MU, NAMED, NAMES, OFFSET, X_F, ZETA
 #: Singular values of scaled slopes below this share of the largest: not identifiable.
 _CONDITION = 1e-6
 
-#: Slides from which friction can be told.
+#: Fewest slides that determine friction.
 _SLIDES = 3
 
 #: Share of the record at rest beyond which little is left to fit.

@@ -525,6 +525,27 @@ CURVES = {
     "limit_kind": Label(
         np.int8, "what ends the motion without stops at beta_lim", CURVE, codes=regimes.LIMIT_KINDS
     ),
+    "beta_slope_lim": Label(
+        np.float64,
+        "friction ratio times slope of its fall over speed from which steady sliding on a belt is unstable",
+        (),
+        least=0.0,
+        inf=True,
+    ),
+    "beta_slope_certificate": Label(
+        np.float64,
+        "friction ratio times steepest slope of its fall up to which the steady state is unique for mu = 1",
+        (),
+        least=0.0,
+        inf=True,
+    ),
+    "wall_speed_lim": Label(
+        np.float64,
+        "wall speed over omega_1 P/k1 from which one-way sliding in the last segment of the law is a motion",
+        (),
+        least=0.0,
+        inf=True,
+    ),
     "beta_noslip": Label(
         np.float64, "friction ratio at or above which no elastic contact slips", ("r",), least=0.0, inf=True
     ),

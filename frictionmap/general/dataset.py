@@ -146,6 +146,7 @@ def general_boundaries(system: System, r: np.ndarray, mu: np.ndarray) -> xr.Data
     """Boundaries of a system with several contacts, springs, belts or harmonics."""
     from .limit_kinds import find_limits
     from .loops import loop_stick_scales
+    from .slopes import slope_limits
 
     contacts = general_of(system)
     refuse_static(contacts, mu)
@@ -161,4 +162,10 @@ def general_boundaries(system: System, r: np.ndarray, mu: np.ndarray) -> xr.Data
             variables["limit_kind"] = label_variable("limit_kind", ended.kind)
             if contacts.count > 1:
                 variables["limiting_contact"] = label_variable("limiting_contact", ended.contact)
+    if contacts.has_law and contacts.count == 1:
+        slopes = slope_limits(system)
+        variables["beta_slope_lim"] = label_variable("beta_slope_lim", np.array(slopes.limit))
+        variables["beta_slope_certificate"] = label_variable(
+            "beta_slope_certificate", np.array(slopes.certificate)
+        )
     return xr.Dataset(variables, coords=coords)

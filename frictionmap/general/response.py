@@ -19,6 +19,7 @@ from .dataset import boundary_variables, contact_coordinates, refuse_static
 from .observed import wants_further
 from .outputs import TABLE, is_wanted, output_values
 from .problem import general_of, static_offset
+from .slopes import one_way_speed
 from .steps import Steps, steps_of
 from .still import still_masses
 
@@ -131,6 +132,9 @@ def general_response(
     variables |= {
         name: v[0, 0] for name, v in boundary_variables(system, limits).items() if v.dims[0] == "mu"
     }
+    if general.has_law and count == 1 and general.groups[0].first.belt:
+        speed = np.array(one_way_speed(system, r, beta))
+        variables["wall_speed_lim"] = label_variable("wall_speed_lim", speed)
     own: dict[str, Any] = {
         "tau": tau,
         "dof": np.array(system.dofs.numbers),

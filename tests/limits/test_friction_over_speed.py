@@ -200,3 +200,63 @@ def test_reference_motions(reference_table):
         assert np.atleast_1d(cell.work_friction) * period == pytest.approx(row["work"], abs=1e-10)
         assert np.atleast_1d(cell.stuck_fraction) == pytest.approx(row["stuck_fraction"], abs=1e-7)
         assert float(cell.multiplier) == pytest.approx(row["multiplier"], abs=1e-10)
+
+
+def slopes_of(system):
+    ds = fm.boundaries(system, [0.5])
+    return float(ds.beta_slope_lim), float(ds.beta_slope_certificate)
+
+
+def two_masses(**more):
+    """Two masses whose damping is not proportional, a contact on the second one."""
+    k, c = np.array([[2.4, -1.1], [-1.1, 1.3]]), np.array([[0.2, -0.05], [-0.05, 0.1]])
+    contact = fm.Contact(masses=2, law=FALLING, **more)
+    return fm.System(
+        matrices={"M": np.diag([1.0, 1.6]), "K": k, "C": c}, contacts=[contact],
+        load_harmonics={1: [0.5, 1.0]}, frequency_scale=1.0, stiffness_scale=1.0,
+    )  # fmt: skip
+
+
+def test_the_damping_of_one_mass_limits_the_slope():
+    """2 zeta + beta g' > 0."""
+    assert slopes_of(one_mass(FALLING, 0.04)) == pytest.approx((0.08, 0.08), rel=1e-12)
+
+
+def test_the_slope_at_which_steady_sliding_loses_stability():
+    """Eigenvalues on both sides of the limit; the certificate is where C - b c c^T becomes singular."""
+    system = two_masses()
+    limit, certificate = slopes_of(system)
+    m, c, k = (getattr(system.modes, name) for name in ("mass", "damping", "stiffness"))
+    for share, stable in ((1.0 - 1e-6, True), (1.0 + 1e-6, False)):
+        fallen = c - share * limit * np.diag([0.0, 1.0])
+        inverse = np.linalg.inv(m)
+        first = np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ k, -inverse @ fallen]])
+        assert (np.linalg.eigvals(first).real.max() < 0.0) == stable
+    assert abs(np.linalg.det(c - certificate * np.diag([0.0, 1.0]))) < 1e-14
+    assert certificate < limit
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_one_way_sliding_begins_at_the_wall_speed_limit(sense):
+    limit = float(fm.response(two_masses(wall_speed=sense), 0.8, 0.3).wall_speed_lim)
+    regimes = [
+        float(fm.response(two_masses(wall_speed=sense * share * limit), 0.8, 0.3).segment_crossings)
+        for share in (1.0 + 1e-4, 1.0 - 1e-4)
+    ]
+    assert regimes[0] == 0.0
+    assert regimes[1] > 0.0
+
+
+@pytest.mark.reference
+def test_reference_slopes(reference_table):
+    """Limits of random structures, by two programs."""
+    for row in reference_table("laws.json")["critical_slope"]:
+        vector = np.array(row["c"])
+        masses = (np.flatnonzero(vector) + 1).tolist()
+        kind = "fixed-wall" if len(masses) == 1 else "between-masses"
+        matrices = {name: np.array(row[name], dtype=float) for name in "MCK"}
+        system = fm.System(
+            matrices=matrices, contacts=[fm.Contact(kind, masses, law=FALLING)], frequency_scale=1.0,
+            stiffness_scale=1.0, load_harmonics={1: np.ones(vector.size)},
+        )  # fmt: skip
+        assert slopes_of(system) == pytest.approx((row["beta_slope"], row["certificate"]), rel=1e-11)

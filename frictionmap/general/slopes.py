@@ -99,7 +99,7 @@ def one_way_speed(system: System, r: float, beta: float) -> float:
     """Least wall speed, over omega_1 P/k_1, from which one-way sliding in the last segment of the law is a
     motion of a system with one contact.
 
-    The friction is there constant but for the damping beta a c c^T: the velocity V of the contact without
+    The friction there is a constant and the damping beta a c c^T: the velocity V of the contact without
     friction becomes V/(1 + i n r beta a A), A = c^T Z^-1 c, per harmonic n.
     """
     general, modes = general_of(system), system.modes

@@ -25,6 +25,7 @@ __all__ = [
     "CLOSED_FORM",
     "COINCIDENCE",
     "CONTINUOUS",
+    "CYCLE_WITHOUT_STOPS",
     "INSIDE",
     "INTEGRATED",
     "IRREGULAR",
@@ -34,6 +35,7 @@ __all__ = [
     "NOT_PERIODIC",
     "NOT_REACHED",
     "NO_LIMIT",
+    "NO_LOAD_REGIMES",
     "ONE_WAY_SLIDING",
     "ORIGINS",
     "PERIODIC_ORBIT",
@@ -43,7 +45,9 @@ __all__ = [
     "REGIMES",
     "RESOLVED",
     "STATUSES",
+    "STEADY_SLIDING",
     "STICK_SLIP",
+    "STICK_SLIP_CYCLE",
     "TOO_MANY_EVENTS",
     "TURN",
     "UNLOADED",
@@ -63,6 +67,9 @@ PERMANENT_STICKING = 0
 STICK_SLIP = 1
 CONTINUOUS = 2
 ONE_WAY_SLIDING = 3
+STEADY_SLIDING = 4
+STICK_SLIP_CYCLE = 5
+CYCLE_WITHOUT_STOPS = 6
 
 NO_LIMIT = 0
 TURN = 1
@@ -107,6 +114,14 @@ REGIMES = (
 BELT_REGIMES = (
     *REGIMES,
     Code(ONE_WAY_SLIDING, "one_way_sliding", "the contact slides against its belt without turning"),
+)
+
+#: Regimes of systems with a belt and no load.
+NO_LOAD_REGIMES = (
+    Code(UNRESOLVED, "unresolved", "no steady state found; see status"),
+    Code(STEADY_SLIDING, "steady_sliding", "the belt slides under the mass, which does not vibrate"),
+    Code(STICK_SLIP_CYCLE, "stick_slip_cycle", "the belt carries the mass along, and it slips back"),
+    Code(CYCLE_WITHOUT_STOPS, "cycle_without_stops", "the mass vibrates and never sticks to the belt"),
 )
 
 #: What ends the motion without stops at beta_lim.

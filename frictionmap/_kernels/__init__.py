@@ -18,6 +18,7 @@ logs               numbers of every cycle of a motion that does not repeat, thei
 long_periods       when a motion is searched for a long period, and when it is taken as irregular
 general            any number of contacts, springs in contacts, belts, periodic loads
 history            motions in time under records
+no_load            one mass on a belt without a load: its phases, all its cycles
 engine             solver of cells: recurrence, periodic orbits, outputs, stability, coexistence
 =================  =====================================================================================
 """

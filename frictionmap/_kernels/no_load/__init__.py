@@ -1,0 +1,14 @@
+"""One mass on a belt without a load: its phases are damped oscillations, and all its cycles are found.
+
+Time is counted over 1/omega_1.  x'' + 2 zeta x' + x = -f, and w = x' - v is the velocity over the belt.
+
+========  ====================================================================================
+module    what is in it
+========  ====================================================================================
+band      an oscillation within a band of velocities: when and where it leaves the band
+orbit     one turn of the motion through its bands, forwards or backwards in time
+cycles    all cycles without stops, as fixed points of the map from a maximum to the next one
+portrait  steady sliding, the stick-slip cycle and the cycles without stops of one cell
+fill      portraits of all cells; the fastest belt with a stick-slip cycle
+========  ====================================================================================
+"""

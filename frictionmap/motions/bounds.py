@@ -59,12 +59,13 @@ def friction_bounds(system: System, ds: xr.Dataset, step: float, *, units: Units
     grows = [float(one.friction(1.0, 1.0)[0] - one.friction(0.0, 1.0)[0]) for one in general.groups]
     ratios = xr.DataArray(grows, dims="contact")
     distance, stuck = (_by_contact(ds[name]) for name in ("sliding_distance", "stuck_fraction"))
-    root = np.sqrt(2.0 * step * (ratios * distance).sum("contact", skipna=False))
+    root = (2.0 * step * (ratios * distance).sum("contact", skipna=False)) ** 0.5
     if not structure.spring.any():
         norms = xr.DataArray(np.linalg.norm(structure.modal.chi, axis=1), dims="contact")
         omega = 1.0 if ds["end_time"].attrs.get("units") != "s" else _omega(motion_scales(units, system))
         times = (1.0 - stuck) * ds["end_time"] * omega
-        root = np.minimum(root, step * (ratios * norms * times).sum("contact", skipna=False))
+        straight = step * (ratios * norms * times).sum("contact", skipna=False)
+        root = root.where(root <= straight, straight)
     plain = all(one.normal_record is None for group in general.groups for one in group.members)
     equal = [plain and general.has_equal_friction(float(mu)) for mu in ds["mu"].values]
     known = (ds["status"] == 0) & xr.DataArray(equal, dims="mu")

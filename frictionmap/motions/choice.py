@@ -1,6 +1,6 @@
 """`least_median`: the friction with the least median of a peak over a suite of records."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,9 @@ _WIDTH = 1e-12
 
 #: Relative changes of the friction whose results are stated.
 _OFFSETS = np.array([-0.2, 0.2])
+
+#: Axis of `local_minima`.
+_VALUES = ["beta", "peak"]
 
 QUANTITIES = ("acceleration_amplitude", "amplitude", "base_force", "residual", "contact_amplitude")
 
@@ -83,20 +86,13 @@ def least_median(
         raise InputError("beta", f"must be two values of friction, from and to; got {checks.one_line(beta)}")
     options: dict[str, Any] = {"mu": mu, "units": units, "after": after, "threads": threads}
 
-    def of_one(values: xr.DataArray) -> np.ndarray:
-        """The values of the mass or the contact, (record, beta)."""
-        values = values.isel(scale=0, mu=0)
-        if "dof" in values.dims:
-            values = values.isel(dof=system.dofs.number(mass, "mass") - 1)
-        elif "contact" in values.dims:
-            values = values.isel(contact=contact - 1)
-        return values.transpose("record", "beta").values
+    place = {"dof": system.dofs.number(mass, "mass") - 1, "contact": contact - 1}
 
     def motions(friction: np.ndarray) -> xr.Dataset:
         return history(system, records, beta=friction, samples="none", beta_hold=False, **options)
 
     def peaks(friction: np.ndarray) -> np.ndarray:
-        return of_one(abs(motions(friction)[quantity]))
+        return _of_one(abs(motions(friction)[quantity]), place)
 
     def least(friction: np.ndarray) -> np.ndarray:
         order = np.unique(friction)
@@ -105,12 +101,11 @@ def least_median(
 
     grid = np.linspace(ends[0], ends[1], GRID)
     first = motions(grid)
-    values = of_one(abs(first[quantity]))
+    values = _of_one(abs(first[quantity]), place)
     over = np.quantile(values, quantile, axis=0)
-    bounds = np.full(values.shape, np.nan)
-    if quantity in BOUNDED:
-        bounds = of_one(friction_bounds(system, first, grid[1] - grid[0], units=units)[BOUNDED[quantity]])
-    between = np.quantile(np.maximum(values - bounds, 0.0), quantile, axis=0)[:-1]
+    apart = _apart(system, first, quantity, grid[1] - grid[0], units)
+    lowest = np.maximum(values - (np.nan if apart is None else _of_one(apart, place)), 0.0)
+    between = np.quantile(lowest, quantile, axis=0)[:-1]
     minima = _refined(least, grid, over)
     best = int(np.argmin(minima[1]))
     answer, peak = float(minima[0, best]), float(minima[1, best])
@@ -124,12 +119,24 @@ def least_median(
             "peak_of_offset": ("offset", least(answer * (1.0 + _OFFSETS))),
             "local_minima": (("value", "minimum"), minima),
         },
-        {
-            "beta_search": grid, "record": np.arange(1, len(records) + 1), "offset": _OFFSETS,
-            "value": ["beta", "peak"],
-        },
+        {"beta_search": grid, "record": np.arange(1, len(records) + 1), "offset": _OFFSETS, "value": _VALUES},
         {"quantity": quantity, "quantile": quantile},
     )  # fmt: skip
+
+
+def _apart(
+    system: System, ds: xr.Dataset, quantity: str, step: float, units: Units | None
+) -> xr.DataArray | None:
+    """How far a quantity can be away within a step of friction; None where that has no bound."""
+    if quantity not in BOUNDED:
+        return None
+    return friction_bounds(system, ds, step, units=units)[BOUNDED[quantity]]
+
+
+def _of_one(values: xr.DataArray, place: Mapping[str, int]) -> np.ndarray:
+    """The values of one mass or one contact, (record, beta)."""
+    values = values.isel(scale=0, mu=0).isel(place, missing_dims="ignore")
+    return values.transpose("record", "beta").values
 
 
 def _refined(least: Any, grid: np.ndarray, over: np.ndarray) -> np.ndarray:

@@ -24,7 +24,7 @@ choice           `least_median`: the friction with the least median of a peak ov
 lanes            oscillators with friction under one record, eight at a time
 elastic_spectra  spectra of one mass whose contact has a spring
 spectra          `spectrum`: friction response spectra of one mass
-statistics       medians, quantiles and exceedance over records
+statistics       medians, quantiles, exceedance over records; means of stationary motions over time
 table            the table [record] of a configuration
 configuration    the tables [record], [history] and [spectrum] of a configuration
 ===============  ================================================================================

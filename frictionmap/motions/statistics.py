@@ -209,3 +209,108 @@ def exceedance(values: xr.DataArray, limit: float) -> xr.Dataset:
         found[name].attrs = {"long_name": f"{meaning} of records above the limit", "units": "1"}
     found.attrs = {"limit": limit, "records": count}
     return found
+
+
+def stationary(
+    values: xr.DataArray, *, start: float = 0.0, window: float | None = None, batches: int = 20
+) -> xr.Dataset:
+    """Mean, variance and peak of a stationary motion over time, with standard errors by batch means.
+
+    The time from `start` on is divided into equal batches.  Their means scatter as the whole mean does, but
+    for the number of them, if they are much longer than the motion remembers; `batch_correlation` of
+    neighbouring means then is below 2/sqrt(batches) or so, else the errors are too small.  Between two times
+    the motion is taken as straight.
+
+    Parameters
+    ----------
+    values : DataArray
+        A variable over `time`, such as `v` of `history`, and other dimensions; times do not decrease.
+    start : float
+        Time that is left out, in which the motion becomes stationary.
+    window : float, optional
+        Length of time of the peak: the mean largest absolute value in windows that long; default: a batch.
+    batches : int
+        >= 4.
+
+    Returns
+    -------
+    xarray.Dataset
+        `mean`, `variance`, `peak` and their standard errors, `mean_error`, `variance_error` and `peak_error`,
+        and `batch_correlation`, over the other dimensions.
+
+    Raises
+    ------
+    InputError
+        There is no time, a value is missing, or the time is too short for two windows.
+    """
+    if not isinstance(values, xr.DataArray) or "time" not in values.dims or "time" not in values.coords:
+        raise InputError("values", f"must be a variable over time; got {checks.one_line(values)}")
+    batches = checks.whole(batches, "batches", least=4)
+    given = values.transpose("time", ...)
+    time = given["time"].values
+    start = checks.number(start, "start", least=float(time[0]), most=float(time[-1]))
+    span = (float(time[-1]) - start) / batches
+    window = span if window is None else checks.number(window, "window", above=0.0)
+    count = int(
+        (float(time[-1]) - start) / window * (1.0 + 1e-12)
+    )  # a whole number of them, but for rounding
+    if count < 2 or span == 0.0:
+        raise InputError("window", f"must fit twice into the time after start; got {window:g}")
+    if not np.isfinite(given.values).all():
+        raise InputError("values", "must be finite at all times; got NaN: select one motion")
+    edges = start + span * np.arange(batches + 1)
+    means = _batch_means(time, given.values, edges, square=False)
+    mean, error = means.mean(axis=0), _error(means)
+    squares = _batch_means(time, given.values - mean, edges, square=True)
+    peaks = _peaks(time - start, np.abs(given.values), window, count)
+    found = {
+        "mean": (mean, "mean"), "mean_error": (error, "standard error of the mean"),
+        "variance": (squares.mean(axis=0) + error**2, "variance"),  # the mean takes its own error off
+        "variance_error": (_error(squares), "standard error of the variance"),
+        "peak": (peaks.mean(axis=0), f"mean of the largest modulus in a time of {window:g}"),
+        "peak_error": (_error(peaks), "standard error of the mean largest modulus"),
+        "batch_correlation": (_neighbours(means), "correlation of the means of neighbouring batches"),
+    }  # fmt: skip
+    attrs = {"start": start, "window": window, "batches": batches}
+    return xr.Dataset(
+        {name: (given.dims[1:], one, {"long_name": words}) for name, (one, words) in found.items()},
+        {name: one for name, one in given.coords.items() if "time" not in one.dims}, attrs,
+    )  # fmt: skip
+
+
+def _batch_means(time: np.ndarray, values: np.ndarray, edges: np.ndarray, square: bool) -> np.ndarray:
+    """Means of straight lines, or of their squares, between the edges, (batches, ...)."""
+    flat = values.reshape(time.size, -1)
+    at = np.array([np.interp(edges, time, one) for one in flat.T]).T
+    order = np.argsort(np.concatenate((time, edges)), kind="stable")
+    t, x = np.concatenate((time, edges))[order], np.concatenate((flat, at))[order]
+    a, b = x[:-1], x[1:]
+    part = (a * a + a * b + b * b) / 3.0 if square else 0.5 * (a + b)
+    total = np.cumsum(
+        np.concatenate((np.zeros((1, flat.shape[1])), np.diff(t)[:, np.newaxis] * part)), axis=0
+    )
+    places = np.flatnonzero(order >= time.size)
+    means = np.diff(total[places], axis=0) / np.diff(edges)[:, np.newaxis]
+    return means.reshape(edges.size - 1, *values.shape[1:])
+
+
+def _peaks(time: np.ndarray, values: np.ndarray, window: float, count: int) -> np.ndarray:
+    """Largest values in windows from time 0 on, (windows, ...); both ends of a window belong to it."""
+    begins = np.searchsorted(time, window * np.arange(count))
+    ends = np.searchsorted(time, window * np.arange(1, count + 1), side="right")
+    if (begins == ends).any():
+        raise InputError("window", f"must hold a time at least; got {window:g}")
+    return np.array([values[i:j].max(axis=0) for i, j in zip(begins, ends, strict=True)])
+
+
+def _error(parts: np.ndarray) -> np.ndarray:
+    """Standard error of the mean of independent parts."""
+    return np.asarray(parts.std(axis=0, ddof=1) / np.sqrt(len(parts)))
+
+
+def _neighbours(parts: np.ndarray) -> np.ndarray:
+    """Correlation of neighbouring parts; 0 of parts that are all equal."""
+    away = parts - parts.mean(axis=0)
+    power = (away**2).sum(axis=0)
+    both = (away[1:] * away[:-1]).sum(axis=0)
+    return np.asarray(np.divide(both, power, out=np.zeros_like(both), where=power > 0.0))

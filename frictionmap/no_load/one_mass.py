@@ -21,7 +21,8 @@ def portraits(law: Law, zeta: float, mu: np.ndarray, wall_speed: np.ndarray, bet
 
     Parameters
     ----------
-    law : segments of friction over speed; speeds over omega_1 P/k1, from 0 on, factor 1 there, last slope >= 0
+    law : segments of friction over speed; speeds over omega_1 P/k1, from 0 on, factor 1 there, last slope
+        >= 0
     zeta : damping ratio, >= 0
     mu, wall_speed, beta : increasing axes; mu >= 1, wall_speed > 0, beta >= 0
 

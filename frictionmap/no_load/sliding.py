@@ -59,8 +59,8 @@ def slope_limit(
 ) -> SlopeLimit:
     """Slope at which steady sliding on one contact loses stability: 1/max{Y : Im Y = 0}.
 
-    Y(o) = i o c^T (K - o^2 M + i o C)^-1 c.  Im Y = 0 where c^T (Z^-1 + conj Z^-1) c = 0, which is a quadratic
-    eigenvalue problem with lambda = i o, so no frequency is missed.
+    Y(o) = i o c^T (K - o^2 M + i o C)^-1 c.  Im Y = 0 where c^T (Z^-1 + conj Z^-1) c = 0, which is a
+    quadratic eigenvalue problem with lambda = i o, so no frequency is missed.
 
     Raises
     ------
@@ -74,8 +74,11 @@ def slope_limit(
     n = mass.shape[0]
     zero, edge = np.zeros((n, n)), vector[:, np.newaxis]
     corner = np.zeros((1, 1))
-    two = [np.block([[a, zero, edge * s], [zero, b, edge * s], [edge.T * s, edge.T * s, corner]])
-           for a, b, s in ((stiffness, stiffness, 1.0), (damping, -damping, 0.0), (mass, mass, 0.0))]  # fmt: skip
+    blocks = ((stiffness, stiffness, 1.0), (damping, -damping, 0.0), (mass, mass, 0.0))
+    two = [
+        np.block([[a, zero, edge * s], [zero, b, edge * s], [edge.T * s, edge.T * s, corner]])
+        for a, b, s in blocks
+    ]
     size = 2 * n + 1
     left = np.block([[np.zeros((size, size)), np.eye(size)], [-two[0], -two[1]]])
     right = np.block([[np.eye(size), np.zeros((size, size))], [np.zeros((size, size)), two[2]]])

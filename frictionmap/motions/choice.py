@@ -92,7 +92,7 @@ def least_median(
         return history(system, records, beta=friction, samples="none", beta_hold=False, **options)
 
     def peaks(friction: np.ndarray) -> np.ndarray:
-        return _of_one(abs(motions(friction)[quantity]), place)
+        return _values_at(abs(motions(friction)[quantity]), place)
 
     def least(friction: np.ndarray) -> np.ndarray:
         order = np.unique(friction)
@@ -101,10 +101,10 @@ def least_median(
 
     grid = np.linspace(ends[0], ends[1], GRID)
     first = motions(grid)
-    values = _of_one(abs(first[quantity]), place)
+    values = _values_at(abs(first[quantity]), place)
     over = np.quantile(values, quantile, axis=0)
     apart = _apart(system, first, quantity, grid[1] - grid[0], units)
-    lowest = np.maximum(values - (np.nan if apart is None else _of_one(apart, place)), 0.0)
+    lowest = np.maximum(values - (np.nan if apart is None else _values_at(apart, place)), 0.0)
     between = np.quantile(lowest, quantile, axis=0)[:-1]
     minima = _refined(least, grid, over)
     best = int(np.argmin(minima[1]))
@@ -133,7 +133,7 @@ def _apart(
     return friction_bounds(system, ds, step, units=units)[BOUNDED[quantity]]
 
 
-def _of_one(values: xr.DataArray, place: Mapping[str, int]) -> np.ndarray:
+def _values_at(values: xr.DataArray, place: Mapping[str, int]) -> np.ndarray:
     """The values of one mass or one contact, (record, beta)."""
     values = values.isel(scale=0, mu=0).isel(place, missing_dims="ignore")
     return values.transpose("record", "beta").values

@@ -216,10 +216,9 @@ def stationary(
 ) -> xr.Dataset:
     """Mean, variance and peak of a stationary motion over time, with standard errors by batch means.
 
-    The time from `start` on is divided into equal batches.  Their means scatter as the whole mean does, but
-    for the number of them, if they are much longer than the motion remembers; `batch_correlation` of
-    neighbouring means then is below 2/sqrt(batches) or so, else the errors are too small.  Between two times
-    the motion is taken as straight.
+    The time from `start` on is divided into equal batches, whose means give the error of the whole mean if
+    they are much longer than the motion remembers; `batch_correlation` of neighbouring means then is below
+    2/sqrt(batches) or so, else the errors are too small.  Between two times the motion is taken as straight.
 
     Parameters
     ----------
@@ -253,7 +252,7 @@ def stationary(
     window = span if window is None else checks.number(window, "window", above=0.0)
     count = int(
         (float(time[-1]) - start) / window * (1.0 + 1e-12)
-    )  # a whole number of them, but for rounding
+    )  # a whole number of them, except for rounding
     if count < 2 or span == 0.0:
         raise InputError("window", f"must fit twice into the time after start; got {window:g}")
     if not np.isfinite(given.values).all():

@@ -67,7 +67,7 @@ def test_what_has_no_bound():
 
 
 @pytest.mark.parametrize("quantity", ["amplitude", "contact_amplitude", "residual"])
-def test_a_design_says_what_its_grid_can_miss(quantity):
+def test_a_design_bounds_between_its_grid(quantity):
     """Nowhere on a grid ten times as fine is the median below its bound."""
     records = fm.Record.generate("white", 20.0, 0.2, rms=0.5, seed=4, count=5, quantity="force")
     system = fm.System(damping_ratios=0.05, contacts=[fm.Contact("fixed-wall", 1)])

@@ -51,7 +51,7 @@ def _processes(count, size, dt):
     return xr.DataArray(found, dims=("time", "record"), coords={"time": dt * np.arange(size)})
 
 
-def test_errors_hold_as_often_as_they_say():
+def test_errors_hold_as_often_as_stated():
     """Of 400 processes; Student's quantile for 19 degrees of freedom at 95 % is 2.093."""
     dt = 0.05
     found = stationary(_processes(400, 20_001, dt))

@@ -84,11 +84,18 @@ class Motions:
         return steps, np.array([asked.every, count, 0, events])
 
     def follow(
-        self, kinetic: np.ndarray, static: np.ndarray, scale: float, asked: Asked, events: bool = True
+        self,
+        kinetic: np.ndarray,
+        static: np.ndarray,
+        scale: float,
+        asked: Asked,
+        events: bool = True,
+        rows: slice = slice(None),
     ) -> Found:
         """Follow one motion; where there is no room for all its events, once more with more.
 
         events : whether states at events are kept, where any are
+        rows : the watched quantities whose peaks are kept
         """
         steps, limits = self._limits(asked, events and asked.every > 0)
         terms = self.drive.terms * scale
@@ -105,16 +112,17 @@ class Motions:
             samples = steps.size // asked.every + int(limits[1] * (1 - limits[2]))
         expected = _FIRST + steps.size // _SAMPLES_PER_EVENT
         room = np.array([expected, samples and samples + 2 * expected * int(limits[3]) + _FIRST])
-        rounding = self._rounding(static, scale)
+        weights = np.ascontiguousarray(self.watched.weights[rows])
+        rounding = self._rounding(static, scale)[rows]
         lengths = len(np.unique(steps))
         lengths = lengths if lengths <= _MOST_LENGTHS else 0
         course = Course(np.ascontiguousarray(terms), steps, self.drive.times, self.drive.jumps)
         while True:
             masses = np.empty((0, self.problem.squares.size))
             record = make_record(self.problem, masses, 0)
-            kept = make_kept(self.problem, self.watched.weights, rounding, record, room)
+            kept = make_kept(self.problem, weights, rounding, record, room)
             one = self.problem._replace(rates=np.ones(1))  # room for the channels of one interval
-            memory = make_memory(one, self.watched.weights.shape[0], terms.shape[2], lengths)
+            memory = make_memory(one, weights.shape[0], terms.shape[2], lengths)
             status, done, asleep = follow_record(
                 self.problem, friction, memory, course, start, asked.start.sense, kept, bed, limits
             )
@@ -174,8 +182,8 @@ class Motions:
         if after is None:
             after = period if self.held.bed.active[0] else 0.0
         while True:
-            found = self.follow(friction, friction, 1.0, asked._replace(after=after, every=0), False)
-            forces = np.abs(found.kept.peaks[:2, rows]).max(axis=0)
+            found = self.follow(friction, friction, 1.0, asked._replace(after=after, every=0), False, rows)
+            forces = np.abs(found.kept.peaks[:2]).max(axis=0)
             done = asked.after is not None or not 0.0 < after < _MOST_PERIODS * period
             if done or (self._bound(found) <= forces * (1.0 + _SAME)).all():
                 return forces

@@ -183,16 +183,7 @@ TESTS = {
     ),
 }  # fmt: skip
 
-#: Seeds of the tests, as many as three minutes of a shared processor fitted; of the others, 20.
-_SEEDS = {
-    "static friction": 90,
-    "spring beside, and drift": 40,
-    "nearly rigid contact": 35,
-    "play, and friction that depends on the direction": 30,
-    "sine": 30,
-    "velocity": 25,
-    "speed law, rising frequency": 12,
-    "mass and delay, two frequencies": 15,
-}
+#: Seeds of every test.
+_SEEDS = 200
 
-CASES = tuple(Case(name, partial(_made, test=test), _SEEDS.get(name, 20)) for name, test in TESTS.items())
+CASES = tuple(Case(name, partial(_made, test=test), _SEEDS) for name, test in TESTS.items())

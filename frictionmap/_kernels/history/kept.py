@@ -4,10 +4,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import entry, kernel
+from ..compiler import entry, inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store
-from ..general.crossings import value_at
-from ..general.problem import LOAD_TERMS, SIZE, TERMS, WIDTH, H, P, Q, first_contact_row, force_row
+from ..general.crossings import slope_at, value_at
+from ..general.problem import (
+    LOAD_TERMS,
+    LONG,
+    NEXT,
+    SIZE,
+    TERMS,
+    WIDTH,
+    H,
+    P,
+    Q,
+    first_contact_row,
+    force_row,
+)
 from ..general.record import HIGH, HIGH_AT, LOW, LOW_AT, Record, keep_range, keep_works
 
 STOP, START, TURN = 0, 1, 2
@@ -44,6 +56,8 @@ class Kept(NamedTuple):
     senses: np.ndarray  # (room, N)
     counts: np.ndarray  # (2,) int: events and states there were; those beyond the room are not listed
     ends: np.ndarray  # (Q,) the watched quantities at the end of the interval
+    sizes: np.ndarray  # (2 m + N + D,) bounds on what they are sums of, over the present step
+    units: np.ndarray  # (2 m + N + D,) the same at its end
     forces: np.ndarray  # (N,) forces in the contacts there
     clock: np.ndarray  # (1,) time at the beginning of the interval
 
@@ -63,7 +77,8 @@ def make_kept(problem, weights, rounding, record, room):
         weights, rounding, peaks, np.zeros((2, watched)), record, np.zeros(2), np.zeros((2, contacts)),
         np.zeros((3, contacts)), np.zeros((room[0], 3)), np.zeros((room[1], columns)),
         np.zeros((room[1], contacts), np.int8), np.zeros(2, np.int64),
-        np.full(watched, np.nan), np.zeros(contacts), np.zeros(1),
+        np.full(watched, np.nan), np.zeros(columns - 1), np.zeros(columns - 1), np.zeros(contacts),
+        np.zeros(1),
     )  # fmt: skip
 
 
@@ -82,13 +97,21 @@ def fill_watched(problem, row, motion, kept, i):
                 at = VALUE * WIDTH + k
                 store(load(scratch, at) + load(series, m * WIDTH + k) * place, scratch, at)
         if rate != 0.0:
-            for k in range(TERMS + 1):
-                scratch[VALUE, k] += rate * (k + 1.0) * series[m, k + 1]
+            for k in range(0, TERMS, LANES):
+                at = VALUE * WIDTH + k
+                part = load(NEXT, k) * rate * load(series, m * WIDTH + k + 1)
+                store(load(scratch, at) + part, scratch, at)
+            scratch[VALUE, TERMS] += rate * (TERMS + 1.0) * series[m, TERMS + 1]
     for j in range(contacts):
         share = weights[i, 2 * modes + j]
         if share != 0.0:
-            for k in range(TERMS):
-                scratch[VALUE, k] += share * series[first + 2 * contacts + j, k]
+            for k in range(0, TERMS, LANES):
+                at = VALUE * WIDTH + k
+                store(
+                    load(scratch, at) + load(series, (first + 2 * contacts + j) * WIDTH + k) * share,
+                    scratch,
+                    at,
+                )
     for d in range(problem.push.shape[1]):
         share = weights[i, 2 * modes + contacts + d]
         if share != 0.0:
@@ -96,10 +119,62 @@ def fill_watched(problem, row, motion, kept, i):
                 scratch[VALUE, k] += share * series[modes + d, k]
 
 
+@inner_kernel
+def _bound(series, at, terms):
+    """Bound on a series of this number of terms over its step."""
+    sum_ = 0.0
+    for k in range(terms):
+        sum_ += abs(series[at, k])
+    return sum_
+
+
+@kernel
+def _fill_units(problem, row, motion, end, kept):
+    """Fill what the watched quantities are sums of: bounds over the present step, values at its end."""
+    contacts, modes = problem.chi.shape
+    series, sizes, units, h = motion.series, kept.sizes, kept.units, row.numbers[H]
+    for m in range(modes):
+        sizes[m], units[m] = _bound(series, m, LONG), value_at(series, m, end)
+        rate = 0.0
+        for k in range(1, TERMS):
+            rate += k * abs(series[m, k])
+        sizes[modes + m], units[modes + m] = rate / h, slope_at(series, m, end) / h
+    for j in range(contacts):
+        source = force_row(problem, j)
+        sizes[2 * modes + j], units[2 * modes + j] = (
+            _bound(series, source, TERMS),
+            value_at(series, source, end),
+        )
+    for d in range(problem.push.shape[1]):
+        at = 2 * modes + contacts + d
+        sizes[at] = _bound(series, modes + d, row.intervals[LOAD_TERMS])
+        units[at] = value_at(series, modes + d, end)
+
+
+@inner_kernel
+def _can_exceed(kept, i):
+    """Whether quantity i can exceed its peaks so far in the present step; its value at the end is kept."""
+    bound, value = 0.0, 0.0
+    for q in range(kept.units.size):
+        bound += abs(kept.weights[i, q]) * kept.sizes[q]
+        value += kept.weights[i, q] * kept.units[q]
+    kept.ends[i] = value
+    return not (bound <= min(kept.peaks[HIGH, i], -kept.peaks[LOW, i]) + kept.rounding[i])
+
+
 @kernel
 def _keep_peaks(problem, row, motion, begin, end, kept):
-    """Include the watched quantities of the present step, which begins at `begin` in the interval."""
+    """Include the watched quantities of the present step.
+
+    Parameters
+    ----------
+    problem, row, motion, kept : see `motion.follow_record`
+    begin, end : where the step begins in the interval, and its end in x after it
+    """
+    _fill_units(problem, row, motion, end, kept)
     for i in range(kept.weights.shape[0]):
+        if not _can_exceed(kept, i):
+            continue
         fill_watched(problem, row, motion, kept, i)
         kept.peaks[LOW_AT, i] = kept.peaks[HIGH_AT, i] = -1.0
         kept.ends[i] = value_at(motion.scratch, VALUE, end)

@@ -204,33 +204,6 @@ def test_from_beta_hold_on_nothing_moves():
     assert below.events.item() > 0
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_two_motions_never_move_apart(seed):
-    """history.md 2: for mu = 1 the energy of their difference never grows, whatever the record."""
-    rng = np.random.default_rng(seed)
-    n = int(rng.integers(1, 4))
-    kappa = np.concatenate(([1.0], rng.uniform(0.4, 2.0, n - 1)))
-    contacts = [fm.Contact("fixed-wall", int(rng.integers(1, n + 1)))]
-    if n > 1:
-        contacts.append(fm.Contact("between-masses", [1, n], ratio=0.5, stiffness=3.0 if seed % 2 else None))
-    system = fm.System(mass_ratios=np.ones(n), stiffness_ratios=kappa, damping_ratios=0.02, contacts=contacts)
-    record = fm.Record(rng.normal(size=300), 0.2, quantity="force")
-    starts = [{"x": rng.normal(size=n), "v": rng.normal(size=n)} for _ in range(2)]
-    one, two = (fm.history(system, record, beta=0.4, start=start, after=0.0) for start in starts)
-    common = np.intersect1d(one.time.values, two.time.values)[::5]
-    # of times twice there, both sides of an event, one: the state is continuous
-    one, two = (ds.drop_duplicates("time").sel(time=common) for ds in (one, two))
-    dx = (one.x - two.x).values.reshape(n, -1)
-    dv = (one.v - two.v).values.reshape(n, -1)
-    df = (one.friction - two.friction).values.reshape(len(contacts), -1)
-    stretch = np.diff(dx, axis=0, prepend=0.0)
-    energy = 0.5 * (dv**2).sum(axis=0) + 0.5 * (kappa[:, np.newaxis] * stretch**2).sum(axis=0)
-    for j, contact in enumerate(contacts):
-        if contact.stiffness:
-            energy = energy + 0.5 * df[j] ** 2 / contact.stiffness
-    assert (np.diff(energy) <= 1e-12 * energy[0]).all()
-
-
 def test_a_base_that_moves_is_the_force_in_absolute_coordinates():
     """Relative coordinates under -M iota a, and absolute ones under K iota u + C iota u'."""
     t = np.arange(200) * 0.1

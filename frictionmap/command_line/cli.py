@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ..explorer.scene import Scene
     from ..files.config import Config
     from ..files.places import Output
-    from ..motions.configuration import Task
+    from ..motions.configuration import Motions, Task
     from ..stores.contents import Contents
     from ..stores.run import Fill
     from ..stores.store import Store
@@ -255,16 +255,13 @@ def _fill(options: Options, progress: "Progress") -> "Fill":
 def _explore(options: Options) -> None:
     """Serve the page until interrupted, or save it as a file."""
     from ..explorer.presets import PRESETS, preset_scene
-    from ..explorer.scene import scene_of
-    from ..files.config import load_config
 
     if options.config is None:
         if options.overrides:
             raise InputError("cannot use --set without CONFIG.toml: it changes a configuration; give one")
-        scene = preset_scene(next(iter(PRESETS)))
+        scene: Scene | Motions = preset_scene(next(iter(PRESETS)))
     else:
-        config = load_config(options.config, options.overrides, lambda *_: None)  # the page has its own grid
-        scene = scene_of(config)
+        scene = _subject(options)
     if options.output is not None:
         _export_page(options, scene)
         return
@@ -279,16 +276,39 @@ def _explore(options: Options) -> None:
     server.serve_forever()
 
 
+def _subject(options: Options) -> "Scene | Motions":
+    """What the page of a configuration shows: a map, or, with [record] and no [grid], motions in time."""
+    from ..explorer.scene import scene_of
+    from ..files.config import load_config, read_tree
+
+    tree, _ = read_tree(options.config, options.overrides)
+    if "record" not in tree or "grid" in tree:
+        # the page has its own grid
+        return scene_of(load_config(options.config, options.overrides, lambda *_: None))
+    from ..explorer.in_time import check
+    from ..motions.configuration import load_motions
+
+    motions = load_motions(options.config, options.overrides)
+    check(motions)
+    return motions
+
+
 def _put(content: bytes, path: Path) -> None:
     path.write_bytes(content)
 
 
-def _export_page(options: Options, scene: "Scene") -> None:
+def _export_page(options: Options, scene: "Scene | Motions") -> None:
     from .._kernels.compiler.notices import listening
+    from ..explorer.scene import Scene
     from ..explorer.stored import check_page, write_page
     from ..files.places import claimed
     from .progress import Progress
 
+    if not isinstance(scene, Scene):
+        raise InputError(
+            "cannot use --export with a configuration of motions in time: their page needs the program; use "
+            f"frictionmap history {options.config}, and frictionmap plot"
+        )
     check_page(options.output)
     with claimed(options.output, options.overwrite, scene.files) as output:
         with (

@@ -161,6 +161,13 @@ _SI_UNITS = {
 }  # fmt: skip
 
 
+def stuck_times(time: np.ndarray, directions: np.ndarray) -> np.ndarray:
+    """Beginnings and ends of the times in which all contacts stick, of directions (contact, time)."""
+    stuck = (directions == 0).all(axis=0)
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], stuck, [False])).astype(int)))
+    return time[np.minimum(edges, time.size - 1)].reshape(-1, 2)
+
+
 def si_name(name: str, measure: str) -> str:
     """Name of a variable in its SI unit."""
     return f"{name}_{_SI_UNITS[measure][1]}"

@@ -28,6 +28,7 @@ rehearsal          small computations of every kind, so that kernels are compile
 compile_times      time that kernels take to compile on this machine
 jobs               running requests, cancellation, state of compilation
 downloads          a view as a configuration, NetCDF or CSV
+in_time            motions in time under records: what their page offers and asks for
 server             HTTP server, for this machine only
 stored             the page as one file with precomputed maps
 notebook           the page in a notebook

@@ -68,7 +68,7 @@ def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
         A key is unknown or given twice, or a value is invalid.
     """
     numbers = {slider.key: slider for slider in scene.sliders if slider.key != "mu"}
-    given = _read(text, (*_VIEW, *numbers, *further))
+    given = read_keys(text, (*_VIEW, *numbers, *further))
     start = given.get("start", scene.solver.start)
     checks.choice(start, "start", get_args(Start))
     contact = given.get("contact", "")
@@ -90,7 +90,8 @@ def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
     return Query(view, given, scene.units, dict(changes))
 
 
-def _read(text: str, valid: Sequence[str]) -> dict[str, str]:
+def read_keys(text: str, valid: Sequence[str]) -> dict[str, str]:
+    """Keys and values of a query, as texts: every key valid and given once."""
     try:
         pairs = parse_qsl(text, keep_blank_values=True, strict_parsing=bool(text), max_num_fields=_MOST_KEYS,
                           errors="strict")  # fmt: skip
@@ -149,7 +150,8 @@ def _slider_ratio(text: str, slider: Slider, scales: Callable[[], Scales]) -> fl
     )
 
 
-def _whole(given: Mapping[str, str], name: str, default: int | None = None) -> int:
+def whole(given: Mapping[str, str], name: str, default: int | None = None) -> int:
+    """Return a whole number of a query."""
     if name not in given and default is not None:
         return default
     text = needed(given, name)
@@ -188,8 +190,8 @@ PIECE = ("columns", "rows", "first", "last", "lines", "quantity", *PAGE)
 def piece_of(query: Query) -> tuple[CellQuantity, Piece]:
     """Requested piece of a map, and the quantity that colours it."""
     given = query.given
-    columns, rows = _whole(given, "columns"), _whole(given, "rows")
-    piece = Piece(columns, rows, _whole(given, "first", 0), _whole(given, "last", columns))
+    columns, rows = whole(given, "columns"), whole(given, "rows")
+    piece = Piece(columns, rows, whole(given, "first", 0), whole(given, "last", columns))
     piece.check()
     known = quantities_of(query.view)
     key = checks.choice(given.get("quantity", known[0].key), "quantity", tuple(one.key for one in known))
@@ -198,12 +200,12 @@ def piece_of(query: Query) -> tuple[CellQuantity, Piece]:
 
 def lines_of(query: Query) -> int:
     """Number of requested points of the boundaries; 0: none."""
-    return checks.whole(_whole(query.given, "lines", 0), "lines", least=0, most=MOST_PIXELS)
+    return checks.whole(whole(query.given, "lines", 0), "lines", least=0, most=MOST_PIXELS)
 
 
 def points_of(query: Query) -> int:
     """Number of points of a cut or of boundaries."""
-    return checks.whole(_whole(query.given, "count"), "count", least=2, most=_MOST_POINTS)
+    return checks.whole(whole(query.given, "count"), "count", least=2, most=_MOST_POINTS)
 
 
 def page_of(query: Query) -> tuple[str, int]:
@@ -211,4 +213,4 @@ def page_of(query: Query) -> tuple[str, int]:
     page = query.given.get("page", "")
     if len(page) > 64 or not page.isascii():
         raise InputError("page", f"must be at most 64 ASCII characters; got {checks.one_line(page)}")
-    return page, checks.whole(_whole(query.given, "turn", 0), "turn", least=0)
+    return page, checks.whole(whole(query.given, "turn", 0), "turn", least=0)

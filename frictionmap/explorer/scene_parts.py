@@ -11,7 +11,8 @@ class Slider(NamedTuple):
     least: float
     most: float
     value: float
-    scale: str  # how the slider runs from least to most: "linear", "square" (fine near least) or "log"
+    #: how the slider runs from least to most: "linear", "even" (in digits), "square" (fine near least), "log"
+    scale: str
     unit: str = ""  # words after the number: what it is relative to
     measure: str = ""  # of the scale that converts it to units, such as "force"
 

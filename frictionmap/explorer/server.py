@@ -29,6 +29,7 @@ from .packets import pack
 from .scene import Scene
 
 if TYPE_CHECKING:
+    from ..motions.configuration import Motions
     from .queries import Query
 
 #: Default port, if it is free, so that links to views remain valid.
@@ -298,6 +299,60 @@ class Page:
         return save
 
 
+class MotionPage(Page):
+    """Answers to the addresses of the page of motions in time under records."""
+
+    def __init__(self, motions: "Motions") -> None:
+        self.motions = motions
+        self.jobs = Jobs()
+        self._files = page_files()
+        self._files["index.html"] = self._files["in_time.html"]
+        self._warm, self.shown = threading.Event(), threading.Event()
+        self._work = {
+            "/scene": self._scene,
+            "/state": self._state,
+            "/ratios": self._ratios,
+            "/motion": self._motion,
+        }
+
+    def warm(self) -> None:
+        """Import the computing modules."""
+        try:
+            from . import in_time  # noqa: F401
+
+            self.jobs.listen()
+        finally:
+            self._warm.set()
+
+    def rehearse(self, later: bool = False) -> None:
+        """Compute the first motion, so that kernels are compiled before the page needs them."""
+        if not later:
+            with contextlib.suppress(InputError, Outdated):
+                self._motion("", lambda: False)
+
+    def _page_of(self, query: str) -> tuple["Page", str]:
+        return self, query
+
+    def _scene(self, query: str, gone: Callable[[], bool]) -> Answer:
+        from .in_time import describe
+
+        return _json(describe(self.motions))
+
+    def _ratios(self, text: str, gone: Callable[[], bool]) -> Answer:
+        from .in_time import read
+
+        return _json(read(self.motions, text)._asdict())
+
+    def _motion(self, text: str, gone: Callable[[], bool]) -> Answer:
+        from .in_time import motion, read
+
+        asked = read(self.motions, text)
+        with self.jobs.enter(f"motion {id(asked)}", gone) as job:
+            found = motion(self.motions, asked, job)
+        self.shown.set()
+        return _packet(found)
+
+
 def _json(content: object) -> Answer:
     return Answer(200, _JSON, json.dumps(content, ensure_ascii=False, allow_nan=False).encode())
 
@@ -380,9 +435,9 @@ class Server(ThreadingHTTPServer):
     allow_reuse_address = sys.platform != "win32"  # there it would let two programs have one port
     request_queue_size = 64
 
-    def __init__(self, scene: Scene, port: int) -> None:
+    def __init__(self, scene: "Scene | Motions", port: int) -> None:
         super().__init__((_HOST, port), _Handler)
-        self.page = Page(scene)
+        self.page = Page(scene) if isinstance(scene, Scene) else MotionPage(scene)
         threading.Thread(target=self.page.warm, daemon=True).start()
 
     @property
@@ -399,7 +454,7 @@ class Server(ThreadingHTTPServer):
         self.server_close()
 
 
-def open_server(scene: Scene, port: int | None = None) -> Server:
+def open_server(scene: "Scene | Motions", port: int | None = None) -> Server:
     """Open a server; without a port on the default one, or any free one.
 
     Raises

@@ -61,7 +61,7 @@ def describe_motions(ds: xr.Dataset) -> list[str]:
     cells = list(np.ndindex(*(ds.sizes[dim] for dim in CELL)))
     motions = [ds.isel(dict(zip(CELL, cell, strict=True))) for cell in cells[:_MOST_LINES]]
     if len(cells) == 1:
-        return [f"{name:<{_WIDTH}} {text}" for name, text in (*_rows(motions[0]), *_remarks(ds))]
+        return [f"{name:<{_WIDTH}} {text}" for name, text in (*rows_of_motion(motions[0]), *_remarks(ds))]
     lines = [f"{_heading(one):<{_WIDTH}} {_summary(one)}" for one in motions]
     if len(cells) > _MOST_LINES:
         lines.append(f"... and {len(cells) - _MOST_LINES} further motions")
@@ -130,7 +130,8 @@ _ROWS = (
 )
 
 
-def _rows(one: xr.Dataset) -> Iterator[tuple[str, str]]:
+def rows_of_motion(one: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """What is listed of one motion: names, and values in words."""
     code = STATUSES[int(one["status"])]
     yield "status", code.name if code.value == 0 else f"{code.name}: {code.meaning}"
     for name, words in (("stops", "stops"), ("slips", "slips"), ("turns", "turns")):

@@ -27,6 +27,33 @@ _OF_MOTIONS = ("scale", "after")
 
 
 @dataclass(frozen=True)
+class Motions:
+    """Motions in time that a configuration describes."""
+
+    title: str
+    name: str  # of the file, without its ending
+    text: str  # the TOML text used, overrides applied
+    files: tuple[Path, ...]
+    system: System
+    units: Units | None
+    records: tuple[Record, ...]
+    arguments: Mapping[str, Any]  # of `history`
+
+    def follow(self, records: Sequence[Record] | None = None, **options: Any) -> xr.Dataset:
+        """Follow the motions, or those under other records and with other arguments; errors name keys."""
+        arguments = {**self.arguments, **options}
+        try:
+            return history(
+                self.system, self.records if records is None else records, units=self.units, **arguments
+            )
+        except InputError as error:
+            where = error.where.partition("[")[0].partition(".")[0]
+            table = "record" if where in _OF_MOTIONS else "history"
+            given = where in (*_OF_MOTIONS, *self.arguments)
+            raise (within(table, error) if given else error) from None
+
+
+@dataclass(frozen=True)
 class Task:
     """A configuration of motions in time."""
 
@@ -70,6 +97,19 @@ def _count(*axes: object) -> int:
 
 
 def load_history(path: str | Path, overrides: Sequence[str] = ()) -> Task:
+    """Read a configuration of motions in time as a task.
+
+    Raises
+    ------
+    InputError
+        See `load_motions`.
+    """
+    found = load_motions(path, overrides)
+    count = len(found.records) * _count(*(found.arguments.get(name) for name in ("scale", "beta", "mu")))
+    return Task(found.title, found.name, found.text, found.files, count, found.follow)
+
+
+def load_motions(path: str | Path, overrides: Sequence[str] = ()) -> Motions:
     """Read a configuration of motions in time; [grid] is not used.
 
     Raises
@@ -89,9 +129,16 @@ def load_history(path: str | Path, overrides: Sequence[str] = ()) -> Task:
         given["start"] = str(path.parent / start)
         files = (*files, path.parent / start)
     arguments |= given
-    ask = partial(_ask, common.system, records, common.units, arguments)
-    motions = len(records) * _count(*(arguments.get(name) for name in ("scale", "beta", "mu")))
-    return Task(common.title, path.stem, text, (*common.files, *files), motions, ask)
+    return Motions(
+        common.title,
+        path.stem,
+        text,
+        (*common.files, *files),
+        common.system,
+        common.units,
+        records,
+        arguments,
+    )
 
 
 def load_spectrum(path: str | Path, overrides: Sequence[str] = ()) -> Task:
@@ -214,16 +261,3 @@ def _spectra(
     except InputError as error:
         where = error.where.partition("[")[0]
         raise (within("spectrum", error) if where in given else error) from None
-
-
-def _ask(
-    system: System, records: tuple[Record, ...], units: Units | None, arguments: Mapping[str, Any],
-    **options: Any,
-) -> xr.Dataset:  # fmt: skip
-    """Follow the motions; errors name keys of the tables."""
-    try:
-        return history(system, records, units=units, **arguments, **options)
-    except InputError as error:
-        where = error.where.partition("[")[0].partition(".")[0]
-        table = "record" if where in _OF_MOTIONS else "history"
-        raise (within(table, error) if where in (*_OF_MOTIONS, *arguments) else error) from None

@@ -213,12 +213,13 @@ def in_si(ds: xr.Dataset, scales: Scales) -> xr.Dataset:
 
 
 def _in_seconds(ds: xr.Dataset, omega: float) -> xr.Dataset:
+    found = {}
     for name in TIMES:
         if name in ds.variables:
             meaning = ds[name].attrs["long_name"].split(", over")[0]
             attrs = ds[name].attrs | {"units": "s", "long_name": meaning}
-            ds = ds.assign({name: (ds[name].dims, ds[name].values / omega, attrs)})
-    return ds
+            found[name] = (ds[name].dims, ds[name].values / omega, attrs)
+    return ds.assign(found)  # at once: each call takes milliseconds
 
 
 class Followed(NamedTuple):

@@ -18,6 +18,7 @@ function valueAt(slider, share) {
   const { least, most, scale } = slider;
   if (scale === "log") return Number((least * (most / least) ** share).toPrecision(3));
   const value = least + (most - least) * (scale === "square" ? share ** 2 : share);
+  if (scale === "even") return Number(value.toPrecision(3));
   return scale === "square" ? Number(value.toPrecision(2)) : Number(value.toFixed(2));
 }
 
@@ -33,18 +34,23 @@ export class Controls {
     [this.form, this.scene, this.onChange, this.fixed, this.convert] = [form, scene, onChange, fixed, convert];
     form.addEventListener("submit", (event) => event.preventDefault());
     this.sliders = new Map();
-    if (!fixed) this.#presets(scene.presets);
-    this.#choice("quantity", "colour", scene.quantities);
-    if (!fixed) {
-      if (scene.contacts.length > 1) this.#choice("contact", "contact", scene.contacts);
-      this.#starts();
-    }
+    if (scene.records) this.#choice("record", "record", scene.records);
+    else this.#ofMaps(scene, fixed);
     const shown = scene.sliders.filter((slider) => !fixed || fixed.values[slider.key]);
     const ofStructure = ({ key }) => /^(mass|stiffness)_ratios/.test(key);
     for (const slider of shown.filter((one) => !ofStructure(one))) this.#slider(form, slider);
     const ratios = shown.filter(ofStructure);
     if (ratios.length) this.#ratios(ratios);
-    if (!fixed) this.#cuts();
+    if (!fixed && !scene.records) this.#cuts();
+  }
+
+  /** Menus of maps. */
+  #ofMaps(scene, fixed) {
+    if (!fixed) this.#presets(scene.presets);
+    this.#choice("quantity", "colour", scene.quantities);
+    if (fixed) return;
+    if (scene.contacts.length > 1) this.#choice("contact", "contact", scene.contacts);
+    this.#starts();
   }
 
   #add(parent, html, name = "control") {
@@ -135,7 +141,7 @@ export class Controls {
   /** Show what a view has. */
   set(view) {
     this.view = view;
-    for (const key of ["quantity", "contact"]) {
+    for (const key of ["quantity", "contact", "record"]) {
       const select = this.form.querySelector(`#${key}`);
       if (select) select.value = view[key];
     }

@@ -46,6 +46,16 @@ export class Server {
     return (await this.#get("state", "")).json();
   }
 
+  /** One motion in time under a record. @param {string} query */
+  async inTime(query) {
+    return unpack(await (await this.#get("motion", query)).arrayBuffer());
+  }
+
+  /** Numbers of a query as ratios, and what it does not have as the page begins with it. */
+  async checked(query) {
+    return (await this.#get("ratios", query)).json();
+  }
+
   /** Numbers as ratios: they may have units. @param {object} given  keys of a query */
   async ratios(view, scene, given) {
     return (await this.#get("ratios", typedQuery(view, scene, given))).json();

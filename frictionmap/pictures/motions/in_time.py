@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ...datasets.motion_labels import CELL
+from ...datasets.motion_labels import CELL, stuck_times
 from ...errors import InputError
 from ..drawing import with_options
 from ..options import FigureOptions
@@ -43,11 +43,8 @@ def _by_rows(values: np.ndarray) -> np.ndarray:
 
 def _shade_stops(ax: Axes, time: np.ndarray, directions: np.ndarray) -> None:
     """Shade the times in which all contacts stick."""
-    stuck = (directions == 0).all(axis=0)
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], stuck, [False])).astype(int)))
-    for begin, end in edges.reshape(-1, 2):
-        last = min(end, time.size - 1)
-        ax.axvspan(time[begin], time[last], color=CLASSES[STUCK].colour, alpha=0.35, linewidth=0.0)
+    for begin, end in stuck_times(time, directions):
+        ax.axvspan(begin, end, color=CLASSES[STUCK].colour, alpha=0.35, linewidth=0.0)
 
 
 def _draw_rows(ax: Axes, time: np.ndarray, values: np.ndarray, words: str) -> list[Handle]:

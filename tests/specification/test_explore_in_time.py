@@ -1,0 +1,203 @@
+"""The page of motions in time under records: what its server answers and refuses, what it shows."""
+
+import re
+import subprocess
+import sys
+from urllib.parse import quote
+
+import numpy as np
+import pytest
+from browser import MOVE, page_of
+from pages import ask, packet, served
+
+from frictionmap import InputError
+from frictionmap.explorer.in_time import check, extremes
+from frictionmap.motions.configuration import load_motions
+
+#: A block on a floor that is pushed by a force of 1 for 2 units of time: it has the speed 2 (1 - F) then.
+BLOCK = """\
+title = "A push"
+[system]
+stiffness_ratios = [0.0]
+[record]
+quantity = "force"
+pulse = { kind = "rectangle", amplitude = 1.0, duration = 2.0 }
+after = 20.0
+[history]
+beta = [0.3, 0.5]
+"""
+#: The same in units: P = 20 N, m = 5 kg.
+IN_UNITS = """\
+[system]
+[units]
+natural_frequency = "2 Hz"
+mass = "5 kg"
+load = "20 N"
+[record]
+[record.generate]
+kind = "kanai-tajimi"
+frequency = "2.5 Hz"
+damping = 0.6
+peak = "0.4 g"
+duration = "3 s"
+dt = "0.01 s"
+count = 2
+[history]
+friction = ["5 N"]
+"""
+SHOWN = "#in-time[data-state=done]"
+
+
+def motions_from(folder, text):
+    path = folder / "motions.toml"
+    path.write_text(text)
+    return load_motions(path)
+
+
+@pytest.fixture(scope="module")
+def block(tmp_path_factory):
+    with served(motions_from(tmp_path_factory.mktemp("block"), BLOCK)) as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def shaken(tmp_path_factory):
+    with served(motions_from(tmp_path_factory.mktemp("shaken"), IN_UNITS)) as server:
+        yield server
+
+
+@pytest.mark.parametrize("friction", [0.3, 0.5, 0.8])
+def test_a_block_slides_as_far_as_in_the_formula_of_newmark(block, friction):
+    header, arrays = packet(block, f"/motion?beta={friction}")
+    far = 2.0**2 / (2.0 * friction) * (1.0 - friction)
+    stop = 2.0 / friction  # when friction has taken all momentum
+    assert arrays["x"][0].max() == pytest.approx(far, rel=1e-12)
+    np.testing.assert_allclose(arrays["stuck"][-1], [stop, arrays["time"][-1]], rtol=1e-12)
+    sliding = (arrays["time"] > 0.0) & (arrays["time"] < 0.999 * stop)  # the stop has a sample of each side
+    assert np.allclose(np.abs(arrays["friction"][0][sliding]), friction, rtol=1e-12)
+    rows = dict(header["rows"])
+    assert rows["stops"] == "1"
+    assert float(rows["place of rest"]) == pytest.approx(far, rel=1e-3)
+    assert rows["slides first at"] == "0"
+
+
+def test_a_block_that_a_force_cannot_move(block):
+    header, arrays = packet(block, "/motion?beta=1.5&mu=1.2")
+    assert dict(header["rows"])["slides first at"] == "never"
+    np.testing.assert_array_equal(arrays["stuck"], [[0.0, arrays["time"][-1]]])
+    assert not arrays["x"].any()
+    _, moved = packet(block, "/motion?beta=1.5&mu=1.2&scale=2")
+    assert moved["x"][0].max() == pytest.approx(2.0 * (2.0 - 1.5) * (2.0 / 1.5), rel=1e-12)
+
+
+def test_numbers_may_have_units(shaken):
+    for text, beta in (("5 N", 0.25), ("0.01 kN", 0.5), ("2 m/s^2", 0.5), ("0.75", 0.75)):
+        _, body, _ = ask(shaken, f"/ratios?beta={quote(text)}")
+        assert f'"beta": {beta}' in body.decode(), text
+    header, _ = packet(shaken, f"/motion?record=2&beta={quote('10 N')}")
+    assert dict(header["rows"])["friction"] == "10 N"
+    assert (header["record"], header["beta"]) == (2, 0.5)
+    assert header["names"]["x"] == "displacement [m]"
+    assert header["names"]["time"] == "time [s]"
+
+
+@pytest.mark.parametrize(
+    ("query", "words"),
+    [
+        ("record=3", "record must be <= 2; got 3"),
+        ("record=0", "record must be >= 1; got 0"),
+        ("record=1.5", "record must be a whole number; got 1.5"),
+        ("beta=-1", "beta must be >= 0; got -1"),
+        ("beta=3%20Hz", "Hz is a unit of frequency"),
+        ("mu=0.9", "mu must be >= 1; got 0.9"),
+        ("scale=nan", "scale must be"),
+        ("friction=1", "unknown key 'friction'; valid: record, beta, mu, scale"),
+        ("beta=1&beta=2", "beta must be given once"),
+    ],
+)
+def test_refused_queries(shaken, query, words):
+    for address in ("/motion", "/ratios"):
+        status, body, _ = ask(shaken, f"{address}?{query}")
+        assert status == 400
+        assert words in body.decode()
+        assert body.count(b"\n") == 1
+
+
+def test_units_are_needed_for_friction_with_a_unit(block):
+    status, body, _ = ask(block, "/motion?beta=5%20N")
+    assert status == 400
+    assert re.search("units", body.decode())
+
+
+def test_only_the_page_itself_is_answered(block):
+    assert ask(block, "/motion", {"Origin": "http://elsewhere.example"})[0] == 403
+    assert ask(block, "/motion", {"Host": "elsewhere.example"})[0] == 403
+    assert ask(block, "/map?columns=2&rows=2")[0] == 404
+    status, body, headers = ask(block, "/")
+    assert status == 200
+    assert b"in_time.js" in body
+    assert "default-src 'self'" in headers["Content-Security-Policy"]
+
+
+def test_a_thinner_curve_keeps_its_extremes():
+    rows = np.random.default_rng(3).normal(size=(3, 10_007)).cumsum(axis=1)
+    kept = extremes(rows, 100)
+    assert kept.size <= 100 * 2 * 3 + 2
+    assert (kept[0], kept[-1]) == (0, 10_006)
+    assert (np.diff(kept) > 0).all()
+    for begin in range(0, 10_007, 101):  # ceil(10007 / 100)
+        part = kept[(kept >= begin) & (kept < begin + 101)]
+        for row in rows:
+            own = row[begin : begin + 101]
+            assert (row[part].min(), row[part].max()) == (own.min(), own.max())
+    np.testing.assert_array_equal(extremes(rows[:, :150], 100), np.arange(150))
+
+
+def test_a_missing_reference_value_is_named_before_the_page_opens(tmp_path):
+    motions = motions_from(tmp_path, IN_UNITS.replace('natural_frequency = "2 Hz"\nmass = "5 kg"\n', ""))
+    with pytest.raises(InputError, match=re.escape("units.natural_frequency")):
+        check(motions)
+
+
+def test_motions_are_not_stored_as_a_page(tmp_path):
+    path = tmp_path / "push.toml"
+    path.write_text(BLOCK)
+    command = [
+        sys.executable,
+        "-m",
+        "frictionmap",
+        "explore",
+        str(path),
+        "--export",
+        str(tmp_path / "page.html"),
+    ]
+    found = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert found.returncode == 2
+    assert "frictionmap history" in found.stderr
+    assert not (tmp_path / "page.html").exists()
+
+
+def test_the_motion_follows_the_slider(browser, block):
+    with page_of(browser, block.url, SHOWN) as page:
+        assert page.title() == "A push – frictionmap"
+        before = page.inner_text("#numbers")
+        page.evaluate(MOVE, ["beta", 500])  # half of twice the largest friction, 0.5
+        page.wait_for_selector(SHOWN)
+        assert page.input_value("input.number[name=beta]") == "0.5"
+        assert page.inner_text("#numbers") != before
+        assert re.search(r"place of rest\s+2\b", page.inner_text("#numbers"))
+        assert "beta=0.5" in page.url
+
+
+def test_a_refusal_stands_next_to_its_field(browser, shaken):
+    with page_of(browser, shaken.url, SHOWN) as page:
+        field = page.locator("input.number[name=beta]")
+        field.fill("10 N")
+        field.press("Enter")
+        page.wait_for_selector("#numbers :text('10 N')")
+        assert re.search(r"friction\s+10 N", page.inner_text("#numbers"))
+        field.fill("3 Hz")
+        field.press("Enter")
+        page.wait_for_selector("#controls .refused:not([hidden])")
+        assert "Hz is a unit of frequency" in page.inner_text("#controls .refused:not([hidden])")
+        page.wrong.clear()  # the refusal itself, which browsers log

@@ -8,11 +8,14 @@ import pytest
 import records
 import responses
 from conftest import ROOT
+from scipy.interpolate import CubicSpline
+from shaken_masses import STEP, TURN, base_motion, marched
 
 import frictionmap as fm
 from benchmarks.measures import coverage
 from benchmarks.measures.coverage import counting, disturbances
 from benchmarks.measures.coverage import decays as made_decays
+from benchmarks.measures.coverage import histories as made_histories
 from benchmarks.measures.coverage import sensors as made_sensors
 from benchmarks.measures.coverage.case import Estimate, Made, Trial, attempt, cramer_rao
 from benchmarks.references.chains import chain, continuous
@@ -72,6 +75,26 @@ def test_continuous_motions_are_those_of_one_mass_and_of_the_marched_one(r):
     assert found[0] == pytest.approx(responses.continuous(r, beta, zeta), rel=1e-10)
     marched = steady(Rig(1.0, zeta, beta, 1.0, 0.0, r, (0.0, 1.0)))
     assert marched.first_harmonic() == pytest.approx(found[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("mu", [1.0, 1.3])
+def test_motions_under_any_base_are_those_integrated(mu):
+    """The same base, a spline through samples, by DOP853 between events, whose errors grow at these."""
+    fine, zeta = 20, 0.012
+    time = np.arange(241) * STEP
+    spline, every = CubicSpline(time, base_motion(time)), np.arange(240 * fine + 1) * STEP / fine
+    wanted = marched(time, spline(time), 3.1, zeta, 0.8, mu, (0.0, 0.0))
+    w = TURN * 3.1
+    load = spline(every) + 2.0 * zeta / w * spline(every, 1)
+    march = made_histories.March(made_histories.Mass(w, zeta, 0.8, mu), STEP / fine, load).run()
+    changes = np.flatnonzero(np.diff(march.side))
+    assert changes.size > 10
+    assert set(march.side) == {-1.0, 0.0, 1.0}
+    np.testing.assert_allclose(march.u[::fine], wanted, atol=1e-6)
+    inside = np.setdiff1d(np.arange(1, every.size - 1), np.concatenate((changes, changes + 1)))
+    slopes = (march.v[inside + 1] - march.v[inside - 1]) * fine / (2.0 * STEP)
+    found = made_histories.accelerations(march)[inside]
+    np.testing.assert_allclose(found, slopes, atol=1e-3 * np.abs(found).max())
 
 
 def test_a_motion_that_stops_is_not_continuous():

@@ -8,7 +8,8 @@ errors.
 
 The data are generated without the package: decays in closed form by half cycles, those of sensors with
 filters by matrix exponentials, records by `references.shaken`, forced responses by half-period propagators or
-by marching, sweeps from M, K and C, and forces of dampers by marching their springs.
+by marching, sweeps from M, K and C, forces of dampers by marching their springs, and motions under bases and
+forces of any shape by matrix exponentials of small steps.
 """
 
 import os
@@ -22,7 +23,7 @@ import numpy as np
 
 from ...report.quoted_coverage import HEADER, coverage_notes, coverage_rows
 from ...report.record import machine, save, table
-from . import decays, forced, joint, loops, records, sensors, sweeps
+from . import decays, forced, histories, joint, loops, records, sensors, sweeps
 from .case import SEEDS, Trial, attempt
 from .counting import STATED, row
 from .figure import draw
@@ -35,6 +36,7 @@ KINDS = {
     "sweep": sweeps.CASES,
     "joint": joint.CASES,
     "loop": loops.CASES,
+    "history": histories.CASES,
 }
 
 #: Processes at a time, and fits that one of them is given at once.

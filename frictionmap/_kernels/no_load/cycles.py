@@ -46,6 +46,10 @@ _STEPS = 200
 #: Cycles kept at most; the law has 24 points.
 MOST_CYCLES = 16
 
+#: Intervals looked at in a cell; ordinary ones need some hundred.  Where neither friction nor damping is left
+#: at large speeds, P(x) - x vanishes like 1/x^2 and intervals there are too many.
+MOST_INTERVALS = 5000
+
 
 class Search(NamedTuple):
     """What a search keeps."""
@@ -54,6 +58,7 @@ class Search(NamedTuple):
     critical: np.ndarray  # (4 K + 4,) maxima at which intervals end
     cycles: np.ndarray  # (MOST_CYCLES,) maxima of the cycles, ascending
     damping: np.ndarray  # (MOST_CYCLES,) S there, > 0 where they attract
+    left: np.ndarray  # (1,) intervals that may still be looked at; at 0 the search has given up
 
 
 @inner_kernel
@@ -181,7 +186,8 @@ def _search_interval(belt, search, count, begin, end, steady):
     a, b = begin, end
     at_a = _growth(belt, low, a, steady)
     width = _NEXT * (abs(end) + abs(steady))
-    while a < end:
+    while a < end and search.left[0] > 0:
+        search.left[0] -= 1
         at_b = _growth(belt, high, b, steady)
         if not (a + at_a >= b or b + at_b <= a):
             one = _least_damping(low, high) > 0.0 or _most_damping(low, high) < 0.0
@@ -192,7 +198,8 @@ def _search_interval(belt, search, count, begin, end, steady):
             if (at_a > 0.0) != (at_b > 0.0) and not still:
                 count = _keep(belt, search, count, a, b, at_a > 0.0, steady)
         a, at_a, b = b, at_b, end
-        low[:] = high
+        for i in range(low.size):
+            low[i] = high[i]
     return count
 
 
@@ -285,6 +292,8 @@ def find_beyond(belt, search, count, begin, steady):
         return count, True
     size = max(a - steady, belt.v)
     for _ in range(_DOUBLINGS):
+        if search.left[0] == 0:
+            break
         growth = _growth(belt, search.turns[0], a, steady)
         if growth < 0.0 and _none_beyond(belt, search.turns[0], a):
             return count, True

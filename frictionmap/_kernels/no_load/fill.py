@@ -12,6 +12,10 @@ from .portrait import put_portrait, slip_from_release
 #: Belt speeds tried, over the largest speed of the friction: so many octaves to either side, and in each.
 _OCTAVES, _IN_AN_OCTAVE = 30, 16
 
+#: Octaves above it if nothing damps the last segment: a drop d of the friction changes the velocity of the
+#: slip by d^2/v^2 of it, which must stay above rounding errors.
+_UNDAMPED_OCTAVES = 12
+
 
 @entry
 def fill_portraits(speeds, factors, slopes, zeta, mu, v, beta, found):
@@ -25,7 +29,8 @@ def fill_portraits(speeds, factors, slopes, zeta, mu, v, beta, found):
     found : Portraits over (mu, v, beta)
     """
     critical = np.empty(4 * speeds.size + 4)
-    search = Search(np.empty((3, NUMBERS)), critical, np.empty(MOST_CYCLES), np.empty(MOST_CYCLES))
+    cycles, damping = np.empty(MOST_CYCLES), np.empty(MOST_CYCLES)
+    search = Search(np.empty((3, NUMBERS)), critical, cycles, damping, np.empty(1, np.int64))
     for m in range(mu.size):
         for i in range(v.size):
             for b in range(beta.size):
@@ -52,7 +57,9 @@ def fill_cycle_speeds(speeds, factors, slopes, zeta, mu, beta, found):
         for b in range(beta.size):
             scale = max(beta[b] * mu[m], speeds[-1])
             above, found[m, b] = math.inf, 0.0
-            for j in range(_OCTAVES * _IN_AN_OCTAVE, -_OCTAVES * _IN_AN_OCTAVE - 1, -1):
+            damped = zeta + 0.5 * beta[b] * slopes[-1] > 0.0
+            top = _OCTAVES if damped else _UNDAMPED_OCTAVES
+            for j in range(top * _IN_AN_OCTAVE, -_OCTAVES * _IN_AN_OCTAVE - 1, -1):
                 v = scale * 2.0 ** (j / _IN_AN_OCTAVE)
                 if v > 0.0 and _has_cycle(speeds, factors, slopes, zeta, beta[b], mu[m], v, turns):
                     found[m, b] = math.inf if above == math.inf else v

@@ -9,6 +9,7 @@ from ... import regimes
 from ..compiler import inner_kernel, kernel
 from .cycles import (
     MOST_CYCLES,
+    MOST_INTERVALS,
     damping_of,
     find_between,
     find_beyond,
@@ -182,8 +183,10 @@ def put_portrait(belt, found, at, search):
     steady = belt.beta * factor_at(belt, belt.v)
     growth, frequency = growth_of(belt)
     found.growth[at], found.frequency[at] = growth, frequency
+    search.left[0] = MOST_INTERVALS
     count, proved = _find_cycles(belt, search, steady)
-    found.status[at] = regimes.RESOLVED if proved and count <= MOST_CYCLES else regimes.NOT_REACHED
+    whole = proved and count <= MOST_CYCLES and search.left[0] > 0
+    found.status[at] = regimes.RESOLVED if whole else regimes.NOT_REACHED
     bits = 1 << regimes.STEADY_SLIDING if growth < 0.0 else 0
     found.threshold[at] = math.nan
     for i in range(min(count, MOST_CYCLES) - 1, -1, -1):

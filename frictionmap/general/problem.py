@@ -238,12 +238,14 @@ def problem_of(system: System, r: np.ndarray, beta: float | None = None) -> tupl
     tied = ties(general.vectors, moved, belt, spring)
     # a slider under a varying normal load slips between ends at rest, too: it is watched there
     tied[[bool(group.first.nu) for group in general.groups]] = False
+    # with a law the motion itself decides where contacts come to rest: half a period would mirror the place
+    mirrored = is_symmetric(general) and not general.has_law
     problem = Problem(
         modal.squares, modal.damping, bool((modal.damping != np.diag(np.diag(modal.damping))).any()),
         np.ascontiguousarray(modal.chi), np.ascontiguousarray(push),
         np.ascontiguousarray(np.array([channel.base for channel in channels]).T),
         np.ascontiguousarray(np.array([channel.normal for channel in channels]).T),
         spring, belt, tied, np.array(orders, dtype=float), r, phasors,
-        rates, np.where(sizes > 0.0, sizes, 1.0), is_symmetric(general), law_of(general),
+        rates, np.where(sizes > 0.0, sizes, 1.0), mirrored, law_of(general),
     )  # fmt: skip
     return problem, modal

@@ -70,6 +70,9 @@ def describe_motions(ds: xr.Dataset) -> list[str]:
 
 def _remarks(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
     """What to look out for, of a dataset that says so."""
+    if "interpolation_bound" in ds.attrs:
+        most = _listed(ds.attrs["interpolation_bound"], "m" if "amplitude_m" in ds else "")
+        yield "straight lines or a spline change", f"no displacement by more than {most}"
     if "remark" in ds.attrs:
         yield "remark", str(ds.attrs["remark"])
 

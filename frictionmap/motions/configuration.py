@@ -15,8 +15,10 @@ from ..files.config import checked_table, common_tables, names_of_tables, read_t
 from ..model.system import System
 from ..units.quantities import quantities
 from ..units.scales import Units
+from .bounds import interpolation_bounds
 from .dataset import history
 from .record import Record
+from .scaling import motion_scales
 from .spectra import VARIABLES, Asked, checked_spectra, spectrum
 from .table import records_of
 
@@ -106,7 +108,12 @@ def load_history(path: str | Path, overrides: Sequence[str] = ()) -> Task:
     """
     found = load_motions(path, overrides)
     count = len(found.records) * _count(*(found.arguments.get(name) for name in ("scale", "beta", "mu")))
-    return Task(found.title, found.name, found.text, found.files, count, found.follow)
+
+    def ask(**options: Any) -> xr.Dataset:
+        ds = found.follow(**options)
+        return ds.assign_attrs(_interpolation_bound(ds, found.system, found.records, found.units))
+
+    return Task(found.title, found.name, found.text, found.files, count, ask)
 
 
 def load_motions(path: str | Path, overrides: Sequence[str] = ()) -> Motions:
@@ -261,3 +268,15 @@ def _spectra(
     except InputError as error:
         where = error.where.partition("[")[0]
         raise (within("spectrum", error) if where in given else error) from None
+
+
+def _interpolation_bound(
+    ds: xr.Dataset, system: System, records: tuple[Record, ...], units: Units | None
+) -> dict[str, float]:
+    """What the interpolation of the records can change in a displacement, where mu = 1 and it has a bound."""
+    if (ds["mu"].values != 1.0).any():
+        return {}
+    each = [interpolation_bounds(system, record, units=units)["amplitude"].max().item() for record in records]
+    length = motion_scales(units, system).of("length") if "amplitude_m" in ds else None
+    most = max(each) * float(np.abs(ds["scale"].values).max()) * (1.0 if length is None else length)
+    return {"interpolation_bound": most} if np.isfinite(most) else {}

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from random_chains import random_chain
 
 import frictionmap as fm
-from frictionmap.motions.bounds import friction_bounds
+from frictionmap.motions.bounds import friction_bounds, interpolation_bounds, record_bounds
 
 
 def _system(seed):
@@ -86,3 +87,73 @@ def test_accelerations_have_no_bound():
     records = fm.Record.generate("white", 5.0, 0.2, rms=0.5, seed=4, count=2, quantity="force")
     ds = fm.design.least_median(fm.System(contacts=[fm.Contact("fixed-wall", 1)]), records, (0.02, 0.5))
     assert np.isnan(ds.missed_at_most)
+
+
+def _furthest(system, records, friction, name, **options):
+    """Largest difference of a variable of two motions at their common times, (rows,)."""
+    runs = [fm.history(system, one, beta=friction, beta_hold=False, **options) for one in records]
+    _, *places = np.intersect1d(runs[0].time.values, runs[1].time.values, return_indices=True)
+    rows = [
+        one[name].values.reshape(-1, one.time.size)[:, place] for one, place in zip(runs, places, strict=True)
+    ]
+    return np.abs(rows[0] - rows[1]).max(axis=1)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_interpolations_keep_within_their_bound(seed):
+    """Random chains on belts, rigid and elastic, under forces and accelerations of the base."""
+    rng = np.random.default_rng(seed)
+    system = random_chain(rng)
+    values, dt = rng.normal(size=60), rng.choice([0.1, 0.7])
+    lines = fm.Record(values, dt, quantity="force", mass=int(rng.integers(1, system.n + 1)))
+    spline = fm.Record(values, dt, quantity="force", mass=lines.mass, interpolation="cubic")
+    bound = interpolation_bounds(system, lines)
+    assert interpolation_bounds(system, spline).equals(bound)
+    for friction in (0.0, 0.3):
+        for name, most in (("x", bound.amplitude), ("z", bound.contact_amplitude)):
+            apart = _furthest(system, (lines, spline), friction, name, after=10.0)
+            assert (apart <= most.values * (1.0 + 1e-12)).all()
+
+
+def test_a_resampled_record_of_the_base_keeps_within_its_bound():
+    """Every third sample of a base acceleration, with a contact that the base carries."""
+    system = fm.System(
+        mass_ratios=[1.0, 0.6], stiffness_ratios=[1.0, 0.8], damping_ratios=0.03, excitation="base",
+        damping_reference="base", contacts=[fm.Contact("joined-base-wall", 1)],
+    )  # fmt: skip
+    values = np.cumsum(np.random.default_rng(5).normal(size=91)) / 10.0
+    records = fm.Record(values, 0.1), fm.Record(values[::3], time=0.3 * np.arange(31))
+    bound = record_bounds(system, *records).amplitude.values
+    apart = _furthest(system, records, 0.2, "x", after=10.0)
+    assert (apart <= bound).all()
+    assert (apart > 0.02 * bound).all()
+
+
+def test_the_bound_of_an_interpolation_is_nearly_reached():
+    """A short triangle without friction: the difference of its impulses is the velocity at its end.
+
+    Of the shares s of a half, the spline is 1.5 s - 0.5 s^3, so that the impulse is 5/8 instead of 1/2.
+    """
+    push = fm.Record([0.0, 1.0, 0.0], 0.01, quantity="force")
+    smooth = fm.Record([0.0, 1.0, 0.0], 0.01, quantity="force", interpolation="cubic")
+    lines, spline = (fm.history(fm.System(), one, beta=0.0, after=3.0) for one in (push, smooth))
+    bound = interpolation_bounds(fm.System(), push).amplitude.item()
+    apart = spline.amplitude.item() - lines.amplitude.item()
+    assert apart == pytest.approx(0.25 * 0.01, rel=1e-3)
+    assert 0.9 * bound < apart <= bound
+
+
+def test_what_has_no_bound_of_its_interpolation():
+    system = fm.System(contacts=[fm.Contact("fixed-wall", 1)], excitation="base", damping_reference="base")
+    quake = fm.Record([0.0, 1.0, 0.0], 1.0)
+    assert np.isnan(
+        interpolation_bounds(system, quake).amplitude
+    ).all()  # the wall sees the place of the base
+    hold = fm.Record([0.0, 1.0], 1.0, quantity="force", interpolation="hold")
+    assert np.isnan(interpolation_bounds(fm.System(), hold).amplitude).all()
+    assert np.isnan(
+        interpolation_bounds(fm.System(), fm.Record.pulse("ricker", 1.0, 2.0, quantity="force")).amplitude
+    ).all()
+    two = fm.System(mass_ratios=[1.0, 1.0], stiffness_ratios=[1.0, 1.0])
+    with pytest.raises(fm.InputError, match="other must act as force"):
+        record_bounds(two, hold, fm.Record([0.0, 1.0], 1.0, quantity="force", mass=2))

@@ -7,6 +7,7 @@ from conftest import ROOT
 
 import frictionmap as fm
 from frictionmap.command_line.cli import main
+from frictionmap.motions.bounds import interpolation_bounds
 
 MOTIONS = ROOT / "configs" / "motions"
 FEW = ["--quiet", "--set", "record.generate.count=2", "--set", "record.generate.duration=4 s"]
@@ -43,6 +44,23 @@ def test_history_of_a_suite():
     assert main(["plot", "brace-frame-history.nc"]) == 0
     assert main(["info", "brace-frame-history.nc"]) == 0
     assert main(["export", "brace-frame-history.nc", "-o", "suite.csv"]) == 0
+
+
+def test_the_bound_of_the_interpolation_is_printed(capsys):
+    few = ["--set", "record.generate.count=2", "--set", "record.generate.duration=4 s"]
+    assert main(["history", str(MOTIONS / "brace-frame.toml"), *few, "--set", "record.scale=[0.5, 2.0]"]) == 0
+    with xr.open_dataset("brace-frame-history.nc") as ds:
+        most = ds.attrs["interpolation_bound"]
+    assert f"no displacement by more than {most:.4g} m" in capsys.readouterr().out
+    options = {"frequency": "2.5 Hz", "damping": 0.6, "peak": "0.4 g", "unit": "g", "count": 2}
+    quakes = fm.Record.generate("kanai-tajimi", "4 s", "0.01 s", **options)
+    frame = fm.System(
+        mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.02, excitation="base",
+        damping_reference="base", contacts=[fm.Contact("joined-base-wall", 1)],
+    )  # fmt: skip
+    units = fm.Units(natural_frequency="1.5 Hz", mass="20000 kg")
+    bounds = [float(interpolation_bounds(frame, one, units=units).amplitude.max()) for one in quakes]
+    assert most == pytest.approx(2.0 * max(bounds) / (2.0 * np.pi * 1.5) ** 2, rel=1e-12)
 
 
 def test_one_motion_with_its_history(tmp_path):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from benchmarks.measures.coverage.loops import TESTS, Actuator, Damper, marched, measured
+from benchmarks.measures.coverage.loops import CASES, TESTS, Actuator, Damper, marched, measured
 from frictionmap.errors import InputError
 from frictionmap.identify import loop
 from frictionmap.identify.loop.descent import descend
@@ -241,3 +241,14 @@ def test_a_first_branch_that_is_held_by_static_friction(seed: int) -> None:
     others = {name: value for name, value in STATIC.truth.items() if name != "mu"}
     assert max(abs(one) for one in deviations(ds, others).values()) < 4.0
     assert float(ds.sel(parameter="mu")["lower"]) > 0.99 * 0.398 / 0.32
+
+
+def test_play_that_the_data_hardly_separate() -> None:
+    """Without play, friction by direction and offset have the same effect: the normal matrix is singular."""
+    name = "play, and friction that depends on the direction"
+    place = list(TESTS).index(name)
+    made = CASES[place].make(np.random.default_rng([5, place, 56]))
+    ds = made.fit()
+    for parameter, truth in made.truth.items():
+        one = ds.sel(parameter=parameter)
+        assert abs(float(one["estimate"]) - truth) < 4.0 * float(one["standard_error"])

@@ -5,7 +5,7 @@ equations square the condition, which is 1e6 at most where parameters can be sep
 """
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from ..statistics.least_squares import Problem, Solution
 
@@ -15,6 +15,9 @@ _SETTLED = 1e-6
 
 #: Damping over the scaled normal matrix: at first, its change after a step, and where no step helps.
 _DAMPING, _CHANGE, _MOST_DAMPED = 1e-3, 5.0, 1e9
+
+#: Least damping after one that left the normal matrix, of unit diagonal, singular to rounding.
+_LEAST_DAMPED = 1e-12
 
 #: Reduction of the sum, over the one predicted, beyond which steps may grow.
 _AS_PREDICTED = 0.5
@@ -30,7 +33,12 @@ def descend(problem: Problem, start: np.ndarray, most: int) -> Solution:
     total, damping = float(residual @ residual), _DAMPING
     normal, gradient, scale = _equations(slopes[:, free], residual)
     for _ in range(most):
-        step = -cho_solve(cho_factor(normal + damping * np.eye(free.size)), gradient)
+        try:
+            factors = cho_factor(normal + damping * np.eye(free.size))
+        except LinAlgError:  # unknowns that the data do not separate, to rounding: more damping separates them
+            damping = max(damping * _CHANGE, _LEAST_DAMPED)
+            continue
+        step = -cho_solve(factors, gradient)
         predicted = -float(step @ (2.0 * gradient + normal @ step))
         settled = predicted <= _SETTLED * total / residual.size
         if (settled and damping <= _DAMPING) or damping > _MOST_DAMPED:

@@ -1,7 +1,11 @@
 """Motions in time under records: what their page offers and asks for."""
 
 import contextlib
+import re
+import tempfile
 from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -11,13 +15,14 @@ from .. import checks
 from ..datasets.motion_labels import CELL, si_name, stuck_times
 from ..errors import InputError
 from ..files.motions import rows_of_motion
+from ..motions.channels import drive_of
 from ..motions.configuration import Motions
 from ..motions.record import Record
 from ..motions.scaling import friction_ratio, friction_ratios, motion_scales, scale_of
 from ..units.axes import has_units
 from ..units.table import UNITS, handy_unit
 from ..version import __version__
-from .queries import number, read_keys, whole
+from .queries import needed, number, read_keys, whole
 from .scene_parts import Slider
 
 if TYPE_CHECKING:
@@ -34,6 +39,10 @@ _DRAWN = 6
 
 #: Where sliders end at least: friction over the largest of the configuration, mu as on the page of maps.
 _MOST_BETA, _MOST_MU = 2.0, 3.0
+
+
+#: Records that a page keeps at most, and characters of the name of a file.
+_MOST_RECORDS, _LONGEST_NAME = 200, 80
 
 
 class Asked(NamedTuple):
@@ -140,6 +149,41 @@ def _friction(motions: Motions, text: str) -> float:
     if not has_units(text):
         return checks.number(number(text, "beta"), "beta", least=0.0)
     return friction_ratio(text, "beta", motion_scales(motions.units, motions.system))
+
+
+def named_file(query: str) -> str:
+    """Name of a file in a query, without what leads out of a folder.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    name = re.sub(r"[^\w. -]", "_", needed(read_keys(query, ("name",)), "name"))[-_LONGEST_NAME:].strip(". ")
+    if not name:
+        raise InputError("name must be that of a file; got none")
+    return name
+
+
+def with_file(motions: Motions, name: str, body: bytes) -> Motions:
+    """Add the record in a file, which is read from a temporary folder.
+
+    Raises
+    ------
+    InputError
+        It is no record, or does not go with the system; or there are too many.
+    """
+    if len(motions.records) >= _MOST_RECORDS:
+        raise InputError(f"cannot take more than {_MOST_RECORDS} records: start the page again")
+    with tempfile.TemporaryDirectory(prefix="frictionmap-") as folder:
+        path = Path(folder) / name
+        path.write_bytes(body)
+        try:
+            record = Record.read(path)
+        except InputError as error:
+            raise InputError(str(error).replace(str(path), name)) from None
+    drive_of(motions.system, record, scale_of(record, motion_scales(motions.units, motions.system)))
+    return replace(motions, records=(*motions.records, record))
 
 
 def _followed(motions: Motions, asked: Asked, **options: Any) -> xr.Dataset:

@@ -2,7 +2,8 @@
 
 It listens on 127.0.0.1 and answers requests to that name only: a page of another host that has its name point
 here, and requests from pages of other hosts, are refused (403).  Queries are checked (400, one line), and
-no request changes anything.
+no request changes anything but one: a page of motions in time takes files of records, which it reads in a
+temporary folder and keeps in memory.
 """
 
 import contextlib
@@ -55,6 +56,9 @@ _LATER = 30.0
 
 #: Seconds that a connection may be silent.
 _SILENCE = 120.0
+
+#: Bytes of a file of a record at most.
+_LARGEST_FILE = 32 * 2**20
 
 _KINDS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
 _TEXT, _JSON, _BYTES = "text/plain", "application/json", "application/octet-stream"
@@ -308,6 +312,7 @@ class MotionPage(Page):
         self._files = page_files()
         self._files["index.html"] = self._files["in_time.html"]
         self._warm, self.shown = threading.Event(), threading.Event()
+        self._lock = threading.Lock()
         self._work = {
             "/scene": self._scene,
             "/state": self._state,
@@ -352,6 +357,20 @@ class MotionPage(Page):
         self.shown.set()
         return _packet(found)
 
+    def receive(self, query: str, body: bytes) -> Answer:
+        """Add the record in a file."""
+        from .in_time import describe, named_file, with_file
+
+        self._warm.wait()
+        try:
+            name = named_file(query)
+            with self._lock:
+                self.motions = with_file(self.motions, name, body)
+                number = len(self.motions.records)
+            return _json({"record": number, "records": describe(self.motions)["records"]})
+        except InputError as error:
+            return _text(400, error)
+
 
 def _json(content: object) -> Answer:
     return Answer(200, _JSON, json.dumps(content, ensure_ascii=False, allow_nan=False).encode())
@@ -375,6 +394,31 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_HEAD(self) -> None:
         self.do_GET()
+
+    def do_POST(self) -> None:
+        page, target = self.server.page, urlsplit(self.path)
+        if target.path != "/record" or not isinstance(page, MotionPage):
+            self.send_error(HTTPStatus.NOT_IMPLEMENTED, "Unsupported method ('POST')")
+            return
+        refusal = self._refusal() or self._too_large()
+        if refusal:
+            self.close_connection = True  # what follows is not read
+            self._reply(refusal)
+            return
+        body = self.rfile.read(int(self.headers["Content-Length"]))
+        try:
+            answer = page.receive(target.query, body)
+        except Exception as error:  # the page shows any error in one line
+            answer = _text(500, f"frictionmap failed: {type(error).__name__}: {error}")
+        self._reply(answer)
+
+    def _too_large(self) -> Answer | None:
+        length = self.headers.get_all("Content-Length") or []
+        if len(length) != 1 or not (length[0].isascii() and length[0].isdigit()):
+            return _text(411, "the length of the file must be given")
+        if int(length[0][:12]) > _LARGEST_FILE:
+            return _text(413, f"a file of a record must have at most {_LARGEST_FILE >> 20} MB; got more")
+        return None
 
     def _refusal(self) -> Answer | None:
         """Refusal of requests that do not come from the page itself."""

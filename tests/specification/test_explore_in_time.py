@@ -1,14 +1,18 @@
 """The page of motions in time under records: what its server answers and refuses, what it shows."""
 
+import contextlib
+import http.client
+import json
 import re
 import subprocess
 import sys
+import tempfile
 from urllib.parse import quote
 
 import numpy as np
 import pytest
 from browser import MOVE, page_of
-from pages import ask, packet, served
+from pages import HANG, ask, packet, served
 
 from frictionmap import InputError
 from frictionmap.explorer.in_time import check, extremes
@@ -200,4 +204,73 @@ def test_a_refusal_stands_next_to_its_field(browser, shaken):
         field.press("Enter")
         page.wait_for_selector("#controls .refused:not([hidden])")
         assert "Hz is a unit of frequency" in page.inner_text("#controls .refused:not([hidden])")
+        page.wrong.clear()  # the refusal itself, which browsers log
+
+
+def send(server, name, body, **headers):
+    connection = http.client.HTTPConnection("127.0.0.1", server.server_address[1], timeout=HANG)
+    with contextlib.closing(connection):
+        connection.request("POST", f"/record?name={quote(name)}", body, headers)
+        answer = connection.getresponse()
+        return answer.status, answer.read().decode()
+
+
+#: The push of `BLOCK` as a file: a force of 1 for 2 units of time.
+FILE = b"time,force\n0,1\n2,1\n"
+
+
+def test_a_file_of_a_record_is_one_more_record(tmp_path):
+    with served(motions_from(tmp_path, BLOCK)) as server:
+        status, body = send(server, "../push/down.csv", FILE)
+        assert status == 200, body
+        found = json.loads(body)
+        assert found["record"] == 2
+        assert found["records"][1]["label"] == "2: _push_down"
+        _, arrays = packet(server, "/motion?record=2&beta=0.5")
+        assert arrays["x"][0].max() == pytest.approx(2.0, rel=1e-12)
+        assert not list(tmp_path.glob("**/*.csv"))
+
+
+@pytest.mark.parametrize(
+    ("name", "body", "words"),
+    [
+        ("push.csv", b"time,force\n0,1\n", "push.csv"),
+        ("push.csv", b"\xff\xfe\x00", "push.csv"),
+        ("push.at2", b"no earthquake", "push.at2"),
+        ("push.csv", b"", "push.csv"),
+        ("...", FILE, "name must be that of a file"),
+        ("push.csv", b"time_s,force_N\n0,1\n2,1\n", "natural_frequency"),
+    ],
+)
+def test_refused_files(block, name, body, words):
+    status, said = send(block, name, body)
+    assert status == 400
+    assert words in said
+    assert said.count("\n") == 1
+    assert tempfile.gettempdir() not in said
+
+
+def test_files_come_from_the_page_alone(block, tmp_path):
+    assert send(block, "push.csv", FILE, Origin="http://elsewhere.example")[0] == 403
+    assert send(block, "push.csv", FILE, Origin="null")[0] == 403
+    assert send(block, "push.csv", FILE, Host="elsewhere.example")[0] == 403
+    status, said = send(block, "push.csv", b"", **{"Content-Length": str(2**40)})
+    assert (status, "32 MB" in said) == (413, True)
+    assert send(block, "push.csv", b"", **{"Content-Length": "-1"})[0] == 411
+    assert packet(block, "/motion?record=1")
+    assert ask(block, "/motion?record=2")[0] == 400
+
+
+def test_a_file_that_is_chosen_on_the_page(browser, tmp_path):
+    path = tmp_path / "push.csv"
+    path.write_bytes(FILE)
+    with served(motions_from(tmp_path, BLOCK)) as server, page_of(browser, server.url, SHOWN) as page:
+        page.set_input_files("#file", path)
+        page.wait_for_selector("#record option:nth-child(2)", state="attached")
+        page.wait_for_selector(SHOWN)
+        assert page.input_value("#record") == "2"
+        assert "record=2" in page.url
+        path.write_bytes(b"")
+        page.set_input_files("#file", path)
+        page.wait_for_selector("#file + .refused:not([hidden])")
         page.wrong.clear()  # the refusal itself, which browsers log

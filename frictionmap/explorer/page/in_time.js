@@ -96,6 +96,31 @@ function paint() {
   find("#key").replaceChildren(...of("mass", shown.masses), ...of("contact", shown.contacts), stuck);
 }
 
+/** A field for files of records, which may also be dropped anywhere on the page. */
+function takeFiles() {
+  const field = make("input", { type: "file", id: "file", ariaLabel: "File of a record" });
+  const refused = make("p", { className: "refused", hidden: true, role: "alert" });
+  const label = make("label", { htmlFor: "file" }, "or choose a file, or drop it here");
+  find("#record").after(label, field, refused);
+  const take = async (file) => {
+    refused.hidden = true;
+    try {
+      const { record, records } = await server.addRecord(file);
+      controls.offer("record", records, inControls(view));
+      change({ record });
+    } catch (error) {
+      [refused.textContent, refused.hidden] = [error.message, false];
+    }
+    field.value = "";
+  };
+  field.addEventListener("change", () => field.files.length && take(field.files[0]));
+  addEventListener("dragover", (event) => event.preventDefault());
+  addEventListener("drop", (event) => {
+    event.preventDefault();
+    if (event.dataTransfer.files.length) take(event.dataTransfer.files[0]);
+  });
+}
+
 async function begin() {
   const scene = await server.scene();
   document.title = `${scene.title} – frictionmap`;
@@ -103,6 +128,7 @@ async function begin() {
   view = scene.view;
   controls = new Controls(find("#controls"), scene, change, null, (given) => server.checked(queryOf(given)));
   await server.checked(location.hash.slice(1)).then((found) => (view = found), (error) => say(error.message));
+  takeFiles();
   controls.set(inControls(view));
   ask();
 }

@@ -51,6 +51,15 @@ export class Server {
     return unpack(await (await this.#get("motion", query)).arrayBuffer());
   }
 
+  /** Add the record in a file; its number and all records. @param {File} file */
+  async addRecord(file) {
+    const response = await fetch(`record?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file }).catch(() => {
+      throw new Refused("The file was not taken: frictionmap does not respond, or the file is too large.");
+    });
+    if (!response.ok) throw new Refused((await response.text()).trim());
+    return response.json();
+  }
+
   /** Numbers of a query as ratios, and what it does not have as the page begins with it. */
   async checked(query) {
     return (await this.#get("ratios", query)).json();

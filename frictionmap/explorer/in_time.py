@@ -34,6 +34,9 @@ KEYS = ("record", "beta", "mu", "scale")
 #: Parts of the time of a motion of which the extremes are drawn: about as many as pixels of a wide chart.
 _PARTS = 700
 
+#: Samples of a loop: every one is drawn, because a loop of extremes alone would have other corners.
+_LOOP = 20_000
+
 #: Masses, and contacts, that are drawn; more would cover each other.
 _DRAWN = 6
 
@@ -207,7 +210,8 @@ def motion(motions: Motions, asked: Asked, job: "Job") -> tuple[dict[str, Any], 
     masses, contacts = (spread(len(rows[name]), _DRAWN) for name in ("x", "z"))
     rows |= {"x": rows["x"][masses], "z": rows["z"][contacts], "friction": rows["friction"][contacts]}
     time = ds["time"].values
-    kept = extremes(np.concatenate(list(rows.values())), _PARTS)
+    over_time = [values for name, values in rows.items() if name != "z"]
+    kept = extremes(np.concatenate(over_time), _PARTS)
     in_seconds = ds["time"].attrs.get("units") == "s"
     header = {
         **asked._asdict(),
@@ -218,6 +222,9 @@ def motion(motions: Motions, asked: Asked, job: "Job") -> tuple[dict[str, Any], 
     }
     directions = ds["direction"].values.reshape(-1, time.size)
     arrays = {"time": time[kept], "stuck": stuck_times(time, directions)}
+    loop = around_largest(rows["z"], _LOOP)
+    header["names"]["slip"] = names["z"] + (", around the largest" if loop != slice(0, time.size) else "")
+    arrays |= {"loop_z": rows.pop("z")[:, loop], "loop_force": rows["friction"][:, loop]}
     return header, arrays | {name: values[:, kept] for name, values in rows.items()}
 
 
@@ -239,6 +246,14 @@ def _numbers(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
 def spread(count: int, most: int) -> np.ndarray:
     """Some of several, at even steps, with the first and the last."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
+
+
+def around_largest(rows: np.ndarray, most: int) -> slice:
+    """At most `most` successive samples of rows (row, time), with the largest of all in their middle."""
+    size = rows.shape[1]
+    at = int(np.abs(rows).max(axis=0).argmax())
+    begin = min(max(0, at - most // 2), max(0, size - most))
+    return slice(begin, min(size, begin + most))
 
 
 def extremes(rows: np.ndarray, parts: int) -> np.ndarray:

@@ -30,6 +30,7 @@ from frictionmap.explorer.cell import motion
 from frictionmap.explorer.jobs import Jobs, Outdated
 from frictionmap.explorer.packets import pack, unpack
 from frictionmap.files.config import config_of, load_config
+from frictionmap.motions.configuration import load_motions
 from frictionmap.pictures.classes import classes
 from frictionmap.structures import reduction
 
@@ -480,24 +481,37 @@ def test_internal_errors_are_reported_in_a_line(one, monkeypatch):
 # The page's files
 
 
-def test_the_page_asks_only_our_own_server(one):
-    status, body, headers = ask(one, "/")
-    assert status == 200
-    assert headers["Content-Security-Policy"].startswith("default-src 'self';")
-    assert headers["Content-Type"] == "text/html; charset=utf-8"
-    assert ask(one, "/", method="HEAD")[1] == b""
+def files_asked_for(server):
+    """Names of the files that a page loads, none of which names another host."""
     seen, waiting = set(), {"index.html"}
     while waiting:
         name = waiting.pop()
         seen.add(name)
-        status, body, headers = ask(one, f"/{name}")
+        status, body, _ = ask(server, f"/{name}")
         assert status == 200, name
         text = body.decode()
         # the namespace of SVG is a name that nothing is loaded from
         assert not re.search(r"https?://(?!www\.w3\.org/2000/svg)", text), name
-        found = re.findall(r'(?:from|href|src)[ =]"(?:\./)?([a-z.]+\.(?:js|css))"', text)
+        found = re.findall(r'(?:from|href|src)[ =]"(?:\./)?([a-z_.]+\.(?:js|css))"', text)
         waiting |= set(found) - seen
-    assert seen == {"index.html", *(path.name for path in (ROOT / "frictionmap/explorer/page").iterdir())}
+    return seen
+
+
+def test_the_pages_ask_only_our_own_server(one, tmp_path):
+    status, _, headers = ask(one, "/")
+    assert status == 200
+    assert headers["Content-Security-Policy"].startswith("default-src 'self';")
+    assert headers["Content-Type"] == "text/html; charset=utf-8"
+    assert ask(one, "/", method="HEAD")[1] == b""
+    path = tmp_path / "motions.toml"
+    path.write_text(
+        '[system]\n[record]\nquantity = "force"\npulse = { kind = "ricker", amplitude = 1, duration = 1 }'
+    )
+    with served(load_motions(path)) as server:
+        of_motions = files_asked_for(server)
+    assert {"in_time.js", "in_time.css"} <= of_motions
+    kept = {path.name for path in (ROOT / "frictionmap/explorer/page").iterdir()} - {"in_time.html"}
+    assert files_asked_for(one) | of_motions == kept  # the server gives in_time.html as index.html
 
 
 # What is outdated

@@ -15,7 +15,7 @@ from browser import MOVE, page_of
 from pages import HANG, ask, packet, served
 
 from frictionmap import InputError
-from frictionmap.explorer.in_time import check, extremes
+from frictionmap.explorer.in_time import around_largest, check, extremes
 from frictionmap.motions.configuration import load_motions
 
 #: A block on a floor that is pushed by a force of 1 for 2 units of time: it has the speed 2 (1 - F) then.
@@ -155,6 +155,15 @@ def test_a_thinner_curve_keeps_its_extremes():
             own = row[begin : begin + 101]
             assert (row[part].min(), row[part].max()) == (own.min(), own.max())
     np.testing.assert_array_equal(extremes(rows[:, :150], 100), np.arange(150))
+
+
+def test_the_samples_of_a_loop_are_successive():
+    rows = np.zeros((2, 100))
+    for at, window in ((3, slice(0, 20)), (50, slice(40, 60)), (98, slice(80, 100))):
+        rows[:] = 0.0
+        rows[1, at] = -1.0
+        assert around_largest(rows, 20) == window
+    assert around_largest(rows, 200) == slice(0, 100)
 
 
 def test_a_missing_reference_value_is_named_before_the_page_opens(tmp_path):

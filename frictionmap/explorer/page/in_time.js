@@ -88,8 +88,8 @@ function paint() {
   overTime("#figure .record", shown.drive, names.drive, { lines: lines(shown.drive, () => colour("ink")) });
   overTime("#figure .masses", shown.x, names.x);
   overTime("#figure .contacts", shown.friction, names.friction, { xName: names.time });
-  const loops = shown.contacts.map((_, k) => ({ x: row(shown.z, k), y: row(shown.friction, k), colour: massColour(k), width: 1.1 }));
-  draw(find("#motion .of-loop"), { x: around(shown.z), y: around(shown.friction), xName: names.z, yName: names.friction, left: 62, lines: loops });
+  const loops = shown.contacts.map((_, k) => ({ x: row(shown.loop_z, k), y: row(shown.loop_force, k), colour: massColour(k), width: 1.1 }));
+  draw(find("#motion .of-loop"), { x: around(shown.loop_z), y: around(shown.loop_force), xName: names.slip, yName: names.friction, left: 62, lines: loops });
   find("#numbers").replaceChildren(...shown.rows.map(([name, text]) => tableRow(name, text, "words")));
   const of = (word, numbers) => (numbers.length > 1 ? numbers.map((number, k) => keyLine(massColour(k), `${word} ${number}`)) : []);
   const stuck = make("span", {}, make("span", { className: "band" }), "all contacts stick");

@@ -27,6 +27,7 @@ from .pictures.motions.animation import animate
 from .pictures.motions.history import plot_response
 from .pictures.motions.in_time import plot_history, plot_spectrum
 from .pictures.motions.orbit import plot_orbit
+from .pictures.motions.suites import plot_energies, plot_incremental
 from .pictures.options import FigureOptions
 from .pictures.styles import settings_of, written
 
@@ -43,9 +44,11 @@ __all__ = [
     "plot_boundaries",
     "plot_curves",
     "plot_design",
+    "plot_energies",
     "plot_fit",
     "plot_forces",
     "plot_history",
+    "plot_incremental",
     "plot_orbit",
     "plot_quantity",
     "plot_regimes",
@@ -119,8 +122,8 @@ def draw(
         "estimates": {"fit": plot_fit},
         "shares": {"shares": plot_shares},
         "design": {"design": plot_design},
-        "history": {"history": plot_history},
-        "spectrum": {"spectrum": plot_spectrum},
+        "history": {"history": plot_history, "energies": plot_energies},
+        "spectrum": {"spectrum": plot_spectrum, "incremental": plot_incremental},
     }
     valid = drawn_of[what]
     if log:

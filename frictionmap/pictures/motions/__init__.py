@@ -7,6 +7,7 @@ traces     motion, stops and friction levels of every contact
 loops      friction over the motion in the contacts
 history    motion, friction force and events in time
 in_time    motions under records; friction response spectra
+suites     peaks over the scale of records; energies over friction
 orbit      phase portrait, friction loop, harmonics
 animation  moving picture: masses, lights of stuck contacts, loop
 =========  ===========================================================

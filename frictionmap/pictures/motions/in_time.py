@@ -37,6 +37,31 @@ def values_in_si(ds: xr.Dataset, name: str, suffix: str, unit: str) -> tuple[np.
     return (ds[in_si].values, f" [{unit}]") if in_si in ds else (ds[name].values, "")
 
 
+def draw_band(ax: Axes, at: np.ndarray, values: np.ndarray, colour: str) -> None:
+    """Draw the median over records, and a band between their quartiles; values : (records, places)."""
+    low, middle, high = np.quantile(values, [0.25, 0.5, 0.75], axis=0)
+    ax.plot(at, middle, color=colour, linewidth=1.7)
+    if len(values) > 1:
+        ax.fill_between(at, low, high, color=colour, alpha=0.15, linewidth=0.0)
+
+
+def caption_of(records: int) -> str:
+    """What lines and bands of several records are."""
+    return "median of the records, with their quartiles" if records > 1 else ""
+
+
+def unit_of(values: xr.DataArray) -> str:
+    """The unit after a number; nothing of ratios."""
+    unit = str(values.attrs.get("units", "1"))
+    return "" if unit == "1" else f" {unit.replace(' s-2', '/s²')}"
+
+
+def words_of(values: xr.DataArray) -> str:
+    """Name of an axis of a variable, with its unit in brackets."""
+    unit = unit_of(values).strip()
+    return str(values.attrs.get("long_name", values.name)) + (f" [{unit}]" if unit else "")
+
+
 def _by_rows(values: np.ndarray) -> np.ndarray:
     return values.reshape(-1, values.shape[-1])
 
@@ -157,7 +182,8 @@ def plot_history(
     handles = _draw_traces(axes, one) if single else _draw_peaks(axes[0], ds)
     if ax is None:
         title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
-        legend_below(axes[0].figure, handles, "")
+        motions = 1 if single else ds.sizes["record"] * ds.sizes["scale"]
+        legend_below(axes[0].figure, handles, caption_of(motions))
     return axes
 
 
@@ -171,8 +197,8 @@ def _draw_peaks(ax: Axes, ds: xr.Dataset) -> list[Handle]:
         colour = LINES[k % len(LINES)]
         if len(peaks) > 1:
             ax.plot(beta, peaks[:, k].T, color=colour, **_FAINT)
-        ax.plot(beta, np.median(peaks[:, k], axis=0), color=colour, linewidth=1.8)
-        handles.append(Line2D([], [], color=colour, label=rf"$\mu = {mu:g}$" + ", median" * (len(peaks) > 1)))
+        draw_band(ax, beta, peaks[:, k], colour)
+        handles.append(Line2D([], [], color=colour, label=rf"$\mu = {mu:g}$"))
     ax.set_xlabel(r"friction ratio $\beta$")
     ax.set_ylabel(f"largest displacement{unit}")
     ax.set_ylim(bottom=0.0)
@@ -220,21 +246,15 @@ def plot_spectrum(
     period = ds["period"].values
     handles: list[Handle] = []
     for k, b in enumerate(chosen):
-        low, middle, high = np.quantile(values[:, :, b], [0.25, 0.5, 0.75], axis=0)
-        axes[0].plot(period, middle, color=LINES[k], linewidth=1.6)
-        if len(values) > 1:
-            axes[0].fill_between(period, low, high, color=LINES[k], alpha=0.15, linewidth=0.0)
-        unit = str(ds["beta"].attrs.get("units", "1")).replace("m s-2", "m/s²").replace("1", "")
-        handles.append(Line2D([], [], color=LINES[k], label=f"friction {beta[b]:.3g} {unit}".rstrip()))
+        draw_band(axes[0], period, values[:, :, b], LINES[k])
+        label = f"friction {beta[b]:.3g}{unit_of(ds['beta'])}"
+        handles.append(Line2D([], [], color=LINES[k], label=label))
     if period.size > 1 and period[0] > 0.0 and period[-1] / period[0] > 20.0 and np.isfinite(period[-1]):
         axes[0].set_xscale("log")
     axes[0].set_xlabel("natural period" + (" [s]" if ds["period"].attrs.get("units") == "s" else ""))
-    meaning = str(ds[name].attrs.get("long_name", name))
-    unit = str(ds[name].attrs.get("units", "1"))
-    axes[0].set_ylabel(meaning + ("" if unit == "1" else f" [{unit.replace(' s-2', '/s²')}]"))
+    axes[0].set_ylabel(words_of(ds[name]))
     axes[0].set_ylim(bottom=0.0)
     if ax is None:
         title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
-        caption = "median of the records, with their quartiles" if len(values) > 1 else ""
-        legend_below(axes[0].figure, handles, caption)
+        legend_below(axes[0].figure, handles, caption_of(len(values)))
     return axes

@@ -1,0 +1,145 @@
+"""Pictures of many motions: peaks over the scale of records, and where the energy of the load goes."""
+
+from typing import TYPE_CHECKING, Unpack
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ...errors import InputError
+from ...motions.statistics import over_scale
+from ..drawing import with_options
+from ..options import FigureOptions
+from ..palette import LINES
+from ..panels import Handle, given_axes, legend_below, new_figure, title_figure
+from ..shapes import check_holds, to_draw
+from .in_time import caption_of, draw_band, unit_of, values_in_si, words_of
+
+if TYPE_CHECKING:
+    from ..panels import AxesArray
+
+#: Size of a picture [inch].
+_WIDTH, _HEIGHT = 5.6, 4.0
+
+#: Periods that are drawn at most.
+_MOST_LINES = len(LINES)
+
+
+@with_options
+def plot_incremental(
+    ds: xr.Dataset,
+    ax: "Axes | None" = None,
+    friction: float | None = None,
+    **options: Unpack[FigureOptions],
+) -> "AxesArray":
+    """Draw an incremental dynamic analysis: peaks over the factor of the records, at one friction.
+
+    It is read from a friction spectrum along friction/scale.  There is a line for every period, the median
+    over records, and a band between their quartiles.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `spectrum`, at one mu and one scale, with at least two values of friction above 0.
+    ax : axes of matplotlib, optional
+    friction : float, optional
+        In the unit of `beta`; default: the middle of its values above 0.
+
+    Returns
+    -------
+    An array of the axes.
+
+    Raises
+    ------
+    InputError
+        The dataset is no spectrum, or has several scales, or too few values of friction.
+    """
+    ds = to_draw(ds, "plot_incremental", "spectrum")
+    name = next((one for one in ("amplitude", "acceleration_amplitude") if one in ds), None)
+    if name is None:
+        raise InputError("ds must hold amplitude or acceleration_amplitude to be drawn; got neither")
+    positive = ds["beta"].values[ds["beta"].values > 0.0]
+    if positive.size < 2:
+        raise InputError(f"ds must have at least 2 values of beta above 0; got {positive.size}")
+    chosen = float(positive[positive.size // 2]) if friction is None else friction
+    peaks = over_scale(ds.isel(mu=[0]), chosen, name).isel(mu=0).transpose("record", "period", "scale")
+    axes = _axes(ax)
+    periods = ds["period"].values
+    count = min(periods.size, _MOST_LINES)
+    handles: list[Handle] = []
+    for k, p in enumerate(np.linspace(0, periods.size - 1, count).round().astype(int)):
+        draw_band(axes[0], peaks["scale"].values, peaks.values[:, p], LINES[k])
+        handles.append(
+            Line2D([], [], color=LINES[k], label=f"period {periods[p]:.3g}{unit_of(ds['period'])}")
+        )
+    axes[0].set_xlabel(f"factor of the records, friction {chosen:.3g}{unit_of(ds['beta'])}")
+    axes[0].set_ylabel(words_of(ds[name]))
+    axes[0].set_xlim(0.0, float(peaks["scale"].max()))
+    axes[0].set_ylim(bottom=0.0)
+    if ax is None:
+        title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
+        legend_below(axes[0].figure, handles, caption_of(ds.sizes["record"]))
+    return axes
+
+
+@with_options
+def plot_energies(
+    ds: xr.Dataset,
+    ax: "Axes | None" = None,
+    **options: Unpack[FigureOptions],
+) -> "AxesArray":
+    """Draw where the energy of the load goes, over friction: contacts, damping, and springs at the end.
+
+    The areas are means over the records.  Their sum is the work of the load and of walls that move, and the
+    energy at the beginning.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `history`, at one mu and one scale, with several values of beta.
+    ax : axes of matplotlib, optional
+
+    Returns
+    -------
+    An array of the axes.
+
+    Raises
+    ------
+    InputError
+        The dataset is no history, or has several mu or scales, or one value of beta.
+    """
+    ds = to_draw(ds, "plot_energies", "history")
+    check_holds(ds, ("work_friction", "work_damping", "energy"), "its works")
+    for dim in ("scale", "mu"):
+        if ds.sizes[dim] > 1:
+            raise InputError(f"ds must have one value of {dim}; got {ds.sizes[dim]}: use ds.isel({dim}=[0])")
+    if ds.sizes["beta"] == 1:
+        raise InputError("ds must have several values of beta, over which energies are drawn; got one")
+    joule = ""
+    layers = []
+    for name in ("work_friction", "work_damping", "energy"):
+        values, joule = values_in_si(ds, name, "J", "J")
+        whole = values.reshape(*values.shape[:4], -1).sum(axis=-1)  # of all contacts
+        layers.append(whole[:, 0, 0].mean(axis=0))
+    axes = _axes(ax)
+    words = ("lost in the contacts", "lost in the damping", "stored at the end")
+    axes[0].stackplot(ds["beta"].values, layers, colors=LINES[:3], alpha=0.55, linewidth=0.0)
+    axes[0].plot(ds["beta"].values, np.sum(layers, axis=0), color="black", linewidth=1.2)
+    axes[0].set_xlabel(r"friction ratio $\beta$")
+    axes[0].set_ylabel(f"energy{joule}")
+    axes[0].margins(x=0.0)
+    axes[0].set_ylim(bottom=0.0)
+    if ax is None:
+        handles: list[Handle] = [Patch(color=LINES[k], alpha=0.55, label=one) for k, one in enumerate(words)]
+        handles.append(Line2D([], [], color="black", label="put in"))
+        title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
+        legend_below(axes[0].figure, handles, "mean of the records" if ds.sizes["record"] > 1 else "")
+    return axes
+
+
+def _axes(ax: "Axes | None") -> "AxesArray":
+    if ax is not None:
+        return given_axes(ax, 1, "")
+    return new_figure(_WIDTH, _HEIGHT).subplots(1, 1, squeeze=False).ravel()

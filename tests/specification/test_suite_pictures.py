@@ -1,0 +1,84 @@
+"""Pictures of many motions under records: what is drawn is what the datasets hold."""
+
+import numpy as np
+import pytest
+from layouts import rendered, words_of
+
+import frictionmap as fm
+from frictionmap import plot
+
+RECORDS = fm.Record.generate("white", 10.0, 0.2, rms=0.5, seed=4, count=5, quantity="force")
+
+
+@pytest.fixture(scope="module")
+def suite():
+    system = fm.System(damping_ratios=0.05, contacts=[fm.Contact("fixed-wall", 1)])
+    return fm.history(system, RECORDS, beta=[0.02, 0.05, 0.1, 0.2], after=20.0, samples="none")
+
+
+@pytest.fixture(scope="module")
+def spectra():
+    return fm.spectrum(RECORDS, [2.0, 6.0], [0.0, 0.05, 0.1, 0.2, 0.4], damping=0.05)
+
+
+def _band(collection):
+    """Lower and upper edge of a filled band, over increasing places."""
+    points = collection.get_paths()[0].vertices
+    places = np.unique(points[:, 0])
+    return np.array([[f(points[points[:, 0] == at, 1]) for at in places] for f in (np.min, np.max)])
+
+
+def test_peaks_over_friction_have_a_band_of_their_quartiles(suite):
+    (ax,) = axes = fm.plot_history(suite)
+    peaks = suite.amplitude.values[:, 0, 0, :, 0]
+    assert len(ax.lines) == len(RECORDS) + 1
+    np.testing.assert_array_equal(ax.lines[-1].get_ydata(), np.median(peaks, axis=0))
+    np.testing.assert_allclose(_band(ax.collections[0]), np.quantile(peaks, [0.25, 0.75], axis=0), rtol=1e-14)
+    rendered(axes)
+
+
+def test_energies_add_up_to_the_work_of_the_load(suite):
+    (ax,) = axes = fm.plot_energies(suite)
+    (line,) = ax.lines
+    put_in = (suite.work_load + suite.work_walls).mean("record").values.ravel()
+    np.testing.assert_allclose(line.get_ydata(), put_in, rtol=1e-12)
+    friction, damping, stored = (_band(one) for one in ax.collections)
+    np.testing.assert_allclose(friction[1], suite.work_friction.mean("record").values.ravel(), rtol=1e-14)
+    np.testing.assert_allclose(damping[0], friction[1], rtol=1e-14)
+    np.testing.assert_allclose(stored[1], put_in, rtol=1e-12)
+    assert words_of(axes) == ["lost in the contacts", "lost in the damping", "stored at the end", "put in"]
+    assert plot.draw(suite, "energies")[0].get_ylabel() == "energy"
+    rendered(axes)
+
+
+def test_energies_need_an_axis_of_friction(suite):
+    with pytest.raises(fm.InputError, match="must have several values of beta"):
+        fm.plot_energies(suite.isel(beta=[0]))
+    twice = fm.history(fm.System(), RECORDS[0], beta=[0.1, 0.2], mu=[1.0, 1.2], samples="none")
+    with pytest.raises(fm.InputError, match=r"one value of mu; got 2: use ds.isel\(mu=\[0\]\)"):
+        fm.plot_energies(twice)
+
+
+def test_an_incremental_analysis_is_that_of_scaled_records(spectra):
+    """Against spectra of the scaled records at the one friction."""
+    (ax,) = axes = fm.plot_incremental(spectra, friction=0.1)
+    for k, line in enumerate(ax.lines):
+        scales = line.get_xdata()
+        np.testing.assert_allclose(scales, [0.25, 0.5, 1.0, 2.0])
+        scaled = fm.spectrum(RECORDS, spectra.period.values[k], 0.1, damping=0.05, scale=scales)
+        peaks = scaled.amplitude.values.reshape(len(RECORDS), -1)
+        np.testing.assert_allclose(line.get_ydata(), np.median(peaks, axis=0), rtol=1e-12)
+        np.testing.assert_allclose(
+            _band(ax.collections[k]), np.quantile(peaks, [0.25, 0.75], axis=0), rtol=1e-12
+        )
+    assert ax.get_xlabel() == "factor of the records, friction 0.1"
+    assert fm.plot_incremental(spectra)[0].get_xlabel() == "factor of the records, friction 0.2"
+    rendered(axes)
+
+
+def test_an_incremental_analysis_needs_several_values_of_friction(spectra):
+    with pytest.raises(fm.InputError, match="at least 2 values of beta above 0; got 1"):
+        fm.plot_incremental(spectra.isel(beta=[0, 1]))
+    several = fm.spectrum(RECORDS, [2.0], [0.1, 0.2], scale=[1.0, 2.0])
+    with pytest.raises(fm.InputError, match="must have one value of scale; got 2"):
+        fm.plot_incremental(several)

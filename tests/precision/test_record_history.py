@@ -152,6 +152,29 @@ def test_a_contact_that_holds_is_refused_with_a_bound():
         fm.identify.history(time, x, base=base)
 
 
+OF_STATIC = ["f_n", "zeta", "x_F", "mu", "offset_x"]
+
+
+def test_static_friction_is_refused_if_nothing_sticks():
+    time = np.arange(600) * STEP
+    base = 2.0 * np.cos(TURN * 2.9 * time) + 0.3 * np.cos(TURN * 1.1 * time + 1.0)
+    x = marched(time, base, 3.1, 0.01, 0.5, 1.25, (0.2, 0.0), by_base=False)
+    x = x + 0.02 * np.random.default_rng(1).normal(size=time.size)
+    with pytest.raises(InputError, match=r"cannot identify mu: .*never sticks.*known\.mu"):
+        fm.identify.history(time, x, base=base, free=OF_STATIC)
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.8])
+def test_the_interval_of_mu_holds_all_that_the_record_allows(friction):
+    """Of a motion that nearly never sticks, any mu: the slope by mu is 0 to rounding."""
+    time, base, x = record_of(friction)
+    x = x + 0.02 * np.random.default_rng(1).normal(size=time.size)
+    ds = fm.identify.history(time, x, base=base, free=OF_STATIC)
+    mu = ds.sel(parameter="mu")
+    assert float(mu["lower"]) == 1.0
+    assert float(mu["upper"]) > (1.5 if friction == 0.1 else 1.01)
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [

@@ -28,6 +28,12 @@ _STEPS, _NEAR = 8, 0.01
 #: Chi square within which another minimum is possible as well.
 _POSSIBLE = 10.0
 
+#: Longest step along the profile of mu, whose standard error is 0 or without bound where nothing sticks.
+_STEP_OF_MU = 0.1
+
+#: Events that are starts from rest.
+_START = 2.0
+
 VERDICTS = {
     "no_friction_found": "no friction found",
     "continuous": "friction found, the mass never sticks",
@@ -53,6 +59,7 @@ def judged(fit: HistoryFit, shown: list[str], given_sigma: bool) -> Outcome:
     given_sigma : whether the noise of x was given
     """
     _check_slides(fit)
+    _check_starts(fit)
     _check_identifiable(fit)
     freedom = fit.solution.residual.size - int(fit.problem.free.sum())
     explained = not given_sigma or chdtrc(freedom, fit.solution.sum) >= CHANCE
@@ -92,6 +99,16 @@ def slides_of(fit: HistoryFit) -> int:
     return begun + int(np.sum(events != 0.0))
 
 
+def _check_starts(fit: HistoryFit) -> None:
+    """Refuse mu from a motion in which nothing starts from rest: it acts nowhere else."""
+    events = fit.course.motion.events[: int(fit.course.motion.counts[0]), 2]
+    if np.isnan(fit.held[MU]) and not (events == _START).any():
+        raise InputError(
+            "cannot identify mu: not identifiable, as the mass never sticks and starts again in the record; "
+            "hold it, known.mu"
+        )
+
+
 def _check_identifiable(fit: HistoryFit) -> None:
     together, deficient = undetermined(fit.problem, fit.solution, _CONDITION)
     names = [NAMES[k] for k in together if k < NAMED]
@@ -121,8 +138,9 @@ def _with_profile(fit: HistoryFit, found: Errors, index: int) -> Errors:
     """The interval of a parameter from the growth of the sum."""
     allowed = GROWTH * max(found.variance, 1.0)
     lower, upper = found.lower.copy(), found.upper.copy()
+    step = min(float(found.standard_error[index]) or _STEP_OF_MU, _STEP_OF_MU)
     for ends, sense in ((lower, -1.0), (upper, 1.0)):
-        ends[index] = _profile_end(fit, index, sense * float(found.standard_error[index]), allowed)
+        ends[index] = _profile_end(fit, index, sense * step, allowed)
     errors_of = found.standard_error.copy()
     if lower[index] <= fit.problem.floor[index]:
         errors_of[index] = np.nan
@@ -142,7 +160,7 @@ def _profile_end(fit: HistoryFit, index: int, step: float, allowed: float) -> fl
         if outside == floor:
             return floor
     else:
-        return float(np.copysign(np.inf, step))
+        return float(max(np.copysign(np.inf, step), floor))
     while abs(outside - inside) > _NEAR * abs(step):
         middle = 0.5 * (inside + outside)
         there = _held_sum(fit, index, middle, start)

@@ -298,8 +298,8 @@ def test_reference_speeds_of_the_fastest_belt(reference_table):
         assert (growth < 0.0) == row["steady_sliding_stable_there"]
 
 
-def test_a_search_that_would_not_end_says_so():
-    """Neither friction nor damping at large speeds: nothing bounds the cycles there; the status says it."""
+def test_a_search_that_would_not_end_has_a_status():
+    """Neither friction nor damping at large speeds: nothing bounds the cycles there, as the status shows."""
     found = cell(law_of([(0, 1), (5, 0)], 0.0), 0.0, 0.02)
     assert (found["regime"], found["status"]) == (regimes.STICK_SLIP_CYCLE, regimes.NOT_REACHED)
     assert found["period"] == pytest.approx(6.7368371917651, rel=1e-11)

@@ -72,6 +72,13 @@ def _root(u, rate, delta, bound, begin, end, sign):
     """Time at which a monotone velocity reaches a bound; sign (u - bound) > 0 at the end.
 
     Newton's method, with bisection where it would leave the bracket or converges slowly.
+
+    Parameters
+    ----------
+    u, rate, delta : velocity at time 0, its rate, damping of the oscillation
+    bound : of the band
+    begin, end : times between which the velocity is monotone
+    sign : 1 where it rises to the bound, else -1
     """
     s = begin + (end - begin) * 0.5
     last = math.inf
@@ -96,7 +103,15 @@ def _root(u, rate, delta, bound, begin, end, sign):
 
 @kernel
 def _reaches(u, rate, delta, bound, begin, end, sign):
-    """Time at which a velocity that is monotone from begin to end reaches a bound; -1 if it does not."""
+    """Time at which a velocity reaches a bound; -1 if it does not.
+
+    Parameters
+    ----------
+    u, rate, delta : velocity at time 0, its rate, damping of the oscillation
+    bound : of the band
+    begin, end : times between which the velocity is monotone; the end may be infinite
+    sign : 1 where it rises, else -1
+    """
     if math.isfinite(end):
         if (velocity_at(u, rate, delta, end) - bound) * sign < 0.0:
             return -1.0

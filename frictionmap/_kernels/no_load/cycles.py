@@ -94,7 +94,15 @@ def _growth(belt, turn, x, steady):
 
 @kernel
 def _origin(belt, turn, x, side, k, u, rate):
-    """The maximum from which a motion comes; NaN if it comes from a stop or from none."""
+    """The maximum from which a motion comes; NaN if it comes from a stop or from none.
+
+    Parameters
+    ----------
+    belt : Belt
+    turn : (NUMBERS,)
+    x, u, rate : displacement, velocity, and the rate of the velocity by the time backwards
+    side, k : the band
+    """
     turn[X] = x
     code = follow(belt, turn, side, k, u > 0.0, u, rate, -1)
     return turn[X] if code == MAXIMUM else math.nan
@@ -148,7 +156,16 @@ def critical_maxima(belt, search, begin, end):
 
 @kernel
 def _fixed_point(belt, turn, a, b, rises, steady):
-    """The fixed point between two maxima between which P(x) - x changes its sign once."""
+    """The fixed point between two maxima between which P(x) - x changes its sign once.
+
+    Parameters
+    ----------
+    belt : Belt
+    turn : (NUMBERS,) the turn from the fixed point, at the end
+    a, b : the maxima
+    rises : whether P(x) > x at a
+    steady : displacement of steady sliding
+    """
     x, last = 0.5 * (a + b), math.inf
     for _ in range(_STEPS):
         growth = _growth(belt, turn, x, steady)
@@ -171,7 +188,17 @@ def _fixed_point(belt, turn, a, b, rises, steady):
 
 @kernel
 def _keep(belt, search, count, a, b, rises, steady):
-    """Keep the fixed point in an interval."""
+    """Keep the fixed point in an interval.
+
+    Parameters
+    ----------
+    belt : Belt
+    search : Search
+    count : cycles known
+    a, b : maxima between which P(x) - x changes its sign once
+    rises : whether P(x) > x at a
+    steady : displacement of steady sliding
+    """
     if count < MOST_CYCLES:
         x = _fixed_point(belt, search.turns[2], a, b, rises, steady)
         search.cycles[count] = x

@@ -9,7 +9,7 @@ from .cycles import MOST_CYCLES, Search
 from .orbit import NUMBERS, STOP, Belt
 from .portrait import put_portrait, slip_from_release
 
-#: Belt speeds tried, over the largest speed of the friction: so many octaves to either side, and in each.
+#: Belt speeds tried, over the largest speed of the friction: octaves to either side, and speeds in an octave.
 _OCTAVES, _IN_AN_OCTAVE = 30, 16
 
 #: Octaves above it if nothing damps the last segment: a drop d of the friction changes the velocity of the
@@ -40,7 +40,14 @@ def fill_portraits(speeds, factors, slopes, zeta, mu, v, beta, found):
 
 @kernel
 def _has_cycle(speeds, factors, slopes, zeta, beta, mu, v, turns):
-    """Whether there is a stick-slip cycle."""
+    """Whether there is a stick-slip cycle.
+
+    Parameters
+    ----------
+    speeds, factors, slopes : (K,) segments of the law
+    zeta, beta, mu, v : damping ratio, friction and its ratio, belt speed
+    turns : (2, NUMBERS)
+    """
     belt = Belt(speeds, factors, slopes, zeta, beta, mu, v)
     return slip_from_release(belt, turns[0], turns[1]) == STOP
 
@@ -51,6 +58,13 @@ def fill_cycle_speeds(speeds, factors, slopes, zeta, mu, beta, found):
 
     Speeds are tried from the largest one down; between one without a cycle and the next with one, the limit
     is found by bisection.
+
+    Parameters
+    ----------
+    speeds, factors, slopes : (K,) segments of the law
+    zeta : damping ratio
+    mu, beta : axes
+    found : (n_mu, n_beta)
     """
     turns = np.empty((2, NUMBERS))
     for m in range(mu.size):

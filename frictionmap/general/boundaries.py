@@ -8,10 +8,11 @@ from .. import checks
 from .._kernels.engine.policies import MOVING_START_CAP
 from .._kernels.general.problem import Problem
 from ..jobs import Watch
+from ..model.settings import Start
 from ..model.system import System
 from .held import belt_limit, least_static_friction, stick_scales
 from .no_stop import find_intervals, no_intervals
-from .problem import ModalSystem, general_of
+from .problem import ModalSystem, general_of, is_symmetric
 
 #: Intervals without stops that are looked for in maps.
 INTERVALS = 4
@@ -58,6 +59,17 @@ def rest_states(system: System, modal: ModalSystem, r: np.ndarray) -> np.ndarray
     alone = moving_alone(system, modal)
     state[:, 1, alone] = load_velocities(system, modal, r, np.zeros(r.size))[:, alone]
     return state
+
+
+def stays_at_rest(system: System, start: Start) -> bool:
+    """Whether a motion from rest never begins at or above beta_stick, whatever mu and the law of friction.
+
+    Rigid contacts hold all masses, and the load is as large both ways: the place at rest is the best one.
+    """
+    general = general_of(system)
+    held = general.count == system.n and not general.elastic.any() and not general.base
+    alike = is_symmetric(general) and not any(group.first.nu for group in general.groups)
+    return start == "rest" and held and alike
 
 
 def moving_alone(system: System, modal: ModalSystem) -> np.ndarray:

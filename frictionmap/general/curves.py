@@ -12,7 +12,7 @@ from ..errors import InputError, NoSteadyState
 from ..jobs import Progress
 from ..model.settings import RECORDED, CurveSettings, Solver
 from ..model.system import System
-from .boundaries import find_boundaries
+from .boundaries import find_boundaries, stays_at_rest
 from .cycle import equivalent, first_harmonics, harmonic_values, parts, phase_values, work_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
 from .held import held_forces, held_ranges
@@ -114,14 +114,15 @@ def general_curves(
     count = general.count
     limits = find_boundaries(system, r, mu)
     problem, modal = problem_of(system, r, float(beta.max()))
-    unique = [general.has_equal_friction(float(value)) and not general.has_law for value in mu]
+    from_rest = stays_at_rest(system, solver.start)
+    proved = [from_rest or (general.has_equal_friction(float(one)) and not general.has_law) for one in mu]
     further = wants_further(system, asked.quantities)
     shape = (mu.size, r.size, beta.size)
     tables: dict[str, np.ndarray] = {}
     for done, (m, i, b) in enumerate(np.ndindex(shape), 1):
         values: dict[str, np.ndarray] = {"status": np.array(regimes.NOT_REACHED)}
         try:
-            if unique[m] and solver.skip == "exact" and beta[b] >= limits.beta_stick[m, i]:
+            if proved[m] and solver.skip == "exact" and beta[b] >= limits.beta_stick[m, i]:
                 values = _stuck(system, asked, float(r[i]))
             else:
                 steps = cell_steps(system, problem, modal, i, float(beta[b]), float(mu[m]), solver, further)

@@ -9,7 +9,7 @@ from .._kernels.general.fill import Cells, Grid, fill_rows
 from ..jobs import Job, Progress, Watch, run_counted
 from ..model.settings import Solver
 from ..model.system import System
-from .boundaries import friction_lines
+from .boundaries import friction_lines, stays_at_rest
 from .held import held_ranges
 from .observed import observed_rows
 from .outputs import allocate
@@ -66,9 +66,10 @@ def solve_cells(
     problem, modal = problem_of(system, r, float(beta.max()))
     general = general_of(system)
     kinetic, static = friction_lines(system, mu)
-    unique = (static == kinetic).all(axis=(1, 2)) & (solver.skip == "exact") & (not general.has_law)
+    unique = (static == kinetic).all(axis=(1, 2)) & (not general.has_law)
+    proved = (unique | stays_at_rest(system, solver.start)) & (solver.skip == "exact")
     sticks_from = [np.searchsorted(beta[i], beta_stick[:, i]) for i in range(r.size)]
-    stuck_from = np.where(unique[:, np.newaxis], np.stack(sticks_from, axis=1), many)
+    stuck_from = np.where(proved[:, np.newaxis], np.stack(sticks_from, axis=1), many)
     starts = initial_states(system, problem, modal, solver.start)
     settled = places and not general.free  # the place of a free structure is arbitrary
     grid = Grid(beta, kinetic, static, stuck_from, starts, settled, float(solver.cycles), solver.tolerance)

@@ -21,7 +21,7 @@ from .._kernels.long_periods import WINDOW
 from ..errors import NoSteadyState
 from ..model.settings import Solver
 from ..model.system import System
-from .boundaries import friction_lines
+from .boundaries import friction_lines, stays_at_rest
 from .held import least_static_friction
 from .maps import put_offset
 from .observed import observed_rows
@@ -174,8 +174,14 @@ def cell_steps(
     friction = Friction(kinetic @ np.array([beta, 1.0]), static[0] @ np.array([beta, 1.0]))
     start = initial_states(system, problem, modal, solver.start)[i]
     rows = observed_rows(system, modal, further)
+    unique = bool((friction.static == friction.kinetic).all()) and not problem.law.speed.size
+    from_rest = stays_at_rest(system, solver.start)
+    rests = (unique or from_rest) and _rests(system, problem, i, friction)
+    limits = friction
+    if rests and not unique:  # rounding must not decide whether a load at the limit moves it
+        limits = friction._replace(static=np.full_like(friction.static, np.inf))
     found, halves, multiplier, counts, record, h, count = recorded_state(
-        problem, i, friction, start, (solver.cycles, solver.tolerance), rows, _FIRST,
+        problem, i, limits, start, (solver.cycles, solver.tolerance), rows, _FIRST,
         settled=not system.rigid_modes,
     )  # fmt: skip
     if found.status not in (REPEATS, AVERAGED):
@@ -183,8 +189,7 @@ def cell_steps(
             f"r = {problem.r[i]:g}, beta = {beta:g}, mu = {mu:g}: no steady state was found in "
             f"{found.cycles:.0f} periods; raise solver.cycles"
         )
-    unique = bool((friction.static == friction.kinetic).all()) and not problem.law.speed.size
-    if unique and _rests(system, problem, i, friction):
+    if rests:
         counts[[STOPS, TURNS, SLIPS, REVERSALS, MOVED]] = 0.0  # contacts at their limit, by rounding
     span, averaged = halves // 2, halves // 2
     period = shown = span

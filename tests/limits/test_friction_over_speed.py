@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import frictionmap as fm
 
@@ -153,6 +154,70 @@ def test_a_map_has_the_cells_of_single_motions():
             cell = fm.response(system, r, beta)
             assert ds.peak_to_peak[0, i, b, 0] == pytest.approx(float(cell.peak_to_peak[0]), abs=1e-11)
     assert "beta_lim" not in ds
+
+
+def from_rest(m, k, c, load, r, beta, law, periods):
+    """Displacements of two masses after some periods, by Runge-Kutta; friction on the second one, mu = 1."""
+
+    def acceleration(tau, y, sense):
+        push = (load * np.exp(1j * tau)).real - k @ y[:2] - r * c @ y[2:]
+        if sense == 0:
+            return np.array([push[0] / m[0] / r**2, 0.0]), push[1]
+        force = sense * beta * float(law(r * abs(y[3])))
+        return (push - [0.0, force]) / m / r**2, force
+
+    def stops(tau, y, sense):
+        return sense * y[3] if sense else beta - abs(acceleration(tau, y, 0)[1])
+
+    stops.terminal, stops.direction = True, -1
+    tau, y, sense, end = 0.0, np.zeros(4), 0, 2.0 * np.pi * periods
+    while tau < end:
+        part = solve_ivp(
+            lambda t, y, s: np.concatenate((y[2:], acceleration(t, y, s)[0])), (tau, end), y, method="DOP853",
+            events=stops, args=(sense,), rtol=1e-9, atol=1e-11, max_step=0.1,
+        )  # fmt: skip
+        tau, y = float(part.t[-1]), part.y[:, -1]
+        y[3] = 0.0 if sense else y[3]  # the end of the last part is the one that is returned
+        holding = acceleration(tau, y, 0)[1]
+        slips = sense == 0 or abs(holding) > beta
+        sense = int(np.sign(holding)) if slips else 0
+    return y[:2]
+
+
+@pytest.mark.parametrize(("r", "beta"), [(0.6, 0.8), (0.6, 0.9), (0.8, 0.9), (0.8, 1.0)])
+def test_a_contact_comes_to_rest_where_the_motion_from_rest_leaves_it(r, beta):
+    """The place keeps its sign: among several steady states the start decides."""
+    m, k = np.array([1.0, 1.3]), np.array([[2.0, -1.0], [-1.0, 1.2]])
+    load, contact = np.array([1.0, 0.3j]), fm.Contact(masses=2, law=FALLING)
+    system = fm.System(
+        matrices={"M": np.diag(m), "K": k, "C": 0.1 * k}, contacts=[contact], load_harmonics={1: load},
+        frequency_scale=1.0, stiffness_scale=1.0,
+    )  # fmt: skip
+    found = from_rest(m, k, 0.1 * k, load, r, beta, contact.law, 12)
+    cell = fm.response(system, r, beta)
+    assert float(cell.stuck_fraction) == 1.0
+    assert float(cell.midpoint[1]) == pytest.approx(found[1], abs=1e-6)
+    assert abs(found[1]) > 0.01
+
+
+@pytest.mark.parametrize(("law", "mu"), [(FALLING, 1.0), (FALLING, 2.0), (None, 2.0)])
+def test_a_mass_at_its_limit_stays_at_rest(law, mu):
+    """mu beta is the load: it holds, as |f| <= mu beta at rest, and rounding must not decide."""
+    system = fm.System(
+        matrices={"M": np.eye(1), "K": np.eye(1), "C": 0.06 * np.eye(1)}, contacts=[fm.Contact(law=law)],
+        load_harmonics={1: [1.0], 3: [0.25j]}, frequency_scale=1.0, stiffness_scale=1.0,
+    )  # fmt: skip
+    r = np.linspace(0.1, 2.0, 20)
+    beta = float(fm.boundaries(system, r, [mu]).beta_stick.max())
+    ds = fm.sweep(system, r, [beta], mu=[mu], outputs=["regime", "contact_amplitude"])
+    assert (ds.regime == fm.regimes.PERMANENT_STICKING).all()
+    assert float(ds.contact_amplitude.max()) == 0.0
+    curves = fm.curves(system, r, [beta], mu=[mu])
+    assert float(curves.contact_amplitude.max()) == 0.0
+    for one in r[::5]:
+        cell = fm.response(system, one, beta, mu)
+        assert float(cell.regime) == fm.regimes.PERMANENT_STICKING
+        assert float(cell.amplitude[0]) < 1e-12  # accelerations that cancel, over r^2
 
 
 def reference_system(row):

@@ -35,7 +35,7 @@ def descend(problem: Problem, start: np.ndarray, most: int) -> Solution:
     for _ in range(most):
         try:
             factors = cho_factor(normal + damping * np.eye(free.size))
-        except LinAlgError:  # unknowns that the data do not separate, to rounding: more damping separates them
+        except LinAlgError:  # the data do not separate some unknowns, to rounding: more damping does
             damping = max(damping * _CHANGE, _LEAST_DAMPED)
             continue
         step = -cho_solve(factors, gradient)

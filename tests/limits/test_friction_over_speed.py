@@ -186,7 +186,7 @@ def from_rest(m, k, c, load, r, beta, law, periods):
 
 @pytest.mark.parametrize(("r", "beta"), [(0.6, 0.8), (0.5, 0.8), (0.7, 0.9), (0.8, 0.9)])
 def test_a_contact_comes_to_rest_where_the_motion_from_rest_leaves_it(r, beta):
-    """The place keeps its sign: among several steady states the start decides."""
+    """The place has its own sign: which steady state is reached depends on the initial state."""
     m, k = np.array([1.0, 1.3]), np.array([[2.0, -1.0], [-1.0, 1.2]])
     load, contact = np.array([1.0, 0.3j]), fm.Contact(masses=2, law=FALLING)
     system = fm.System(

@@ -285,6 +285,11 @@ def _subject(options: Options) -> "Scene | Motions":
     if "record" not in tree or "grid" in tree:
         # the page has its own grid
         return scene_of(load_config(options.config, options.overrides, lambda *_: None))
+    if "spectrum" in tree and "system" not in tree:
+        raise InputError(
+            "the page shows motions of one system; a configuration of spectra has none: use "
+            f"frictionmap spectrum {options.config}, or add a table [system]"
+        )
     from ..explorer.in_time import check
     from ..motions.configuration import load_motions
 

@@ -283,3 +283,13 @@ def test_a_file_that_is_chosen_on_the_page(browser, tmp_path):
         page.set_input_files("#file", path)
         page.wait_for_selector("#file + .refused:not([hidden])")
         page.wrong.clear()  # the refusal itself, which browsers log
+
+
+def test_spectra_have_no_page(tmp_path):
+    path = tmp_path / "spectra.toml"
+    record = BLOCK.replace("[system]\nstiffness_ratios = [0.0]\n", "").partition("[history]")[0]
+    path.write_text(record + "[spectrum]\nperiod = [1.0]\nfriction = [0.1]\n")
+    command = [sys.executable, "-m", "frictionmap", "explore", str(path)]
+    found = subprocess.run(command, capture_output=True, text=True, check=False, timeout=HANG)
+    assert found.returncode == 2
+    assert f"use frictionmap spectrum {path}, or add a table [system]" in found.stderr

@@ -26,6 +26,7 @@ _GROUPS: Mapping[str, tuple[str, ...]] = {
     ),
     "Maps, curves, motions": (
         "sweep", "boundaries", "borders", "curves", "response", "continuous_motion", "shares",
+        "history", "spectrum", "stationary",
     ),
     "Pictures": (
         "plot_regimes", "plot_quantity", "plot_boundaries", "plot_curves", "plot_response", "plot_orbit",

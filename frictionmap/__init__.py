@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from .motions.dataset import history
     from .motions.record import Record
     from .motions.spectra import spectrum
+    from .motions.statistics import stationary
     from .plot import (
         animate,
         plot_boundaries,
@@ -137,6 +138,7 @@ __all__ = [
     "response",
     "shares",
     "spectrum",
+    "stationary",
     "sweep",
     "system_in_units",
 ]
@@ -178,6 +180,7 @@ _HOME = {
     "response": "steady.response",
     "shares": "probabilities",
     "spectrum": "motions.spectra",
+    "stationary": "motions.statistics",
     "sweep": "steady.sweep",
 }
 

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import frictionmap as fm
-from frictionmap.motions.statistics import stationary
+from frictionmap import stationary
 
 
 def _white(seed, count, dt):

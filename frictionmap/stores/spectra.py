@@ -18,6 +18,7 @@ from ..datasets.motion_labels import NOT_COMPUTED, STATUSES
 from ..datasets.provenance import quoted, value_text
 from ..motions.lanes import Grid, parts_of
 from ..motions.origins import record_attributes
+from ..motions.pieces import Pieces
 from ..motions.record import Record
 from ..motions.spectra import DIMS, VARIABLES, Asked, computed, load_of
 from .contents import BLOCK_CELLS, Batch, Contents, Cut
@@ -26,7 +27,7 @@ from .contents import BLOCK_CELLS, Batch, Contents, Cut
 _SECONDS = {False: 3e-8, True: 3e-6}
 
 #: What of a record is stored as arrays; the rest but the words about it is text.
-_ARRAYS = ("values", "time", "slopes")
+_ARRAYS = ("values", "time", *(f"series_{name}" for name in Pieces._fields))
 _WORDS = ("source", "note")
 
 _GROUP = "records"
@@ -49,9 +50,10 @@ class _Stored(Sequence[Record]):
         keys = {name: value for name, value in self._keys[k].items() if name != "sha256"}
         names = {name: f"{_GROUP}/{k + 1}_{name}" for name in _ARRAYS}
         given: dict[str, Any] = {
-            name: self._arrays[place] for name, place in names.items() if place in self._arrays
+            name: np.asarray(self._arrays[place]) for name, place in names.items() if place in self._arrays
         }
-        return Record(**keys, **given)
+        series = [given.pop(name) for name in _ARRAYS if name.startswith("series_") and name in given]
+        return Record(**keys, **given, series=Pieces(*series) if series else None)
 
 
 @dataclass(frozen=True)
@@ -194,15 +196,16 @@ class Spectra(Contents):
 
 
 def _arrays(record: Record) -> dict[str, np.ndarray]:
-    given = {name: getattr(record, name) for name in _ARRAYS}
-    return {name: np.asarray(value) for name, value in given.items() if value is not None}
+    series = record.series or (None,) * len(Pieces._fields)
+    given = zip(_ARRAYS, (record.values, record.time, *series), strict=True)
+    return {name: np.asarray(value) for name, value in given if value is not None}
 
 
 def _keys(record: Record) -> dict[str, Any]:
     """What identifies a record: its fields, and the checksum of its arrays."""
     found = {
         one.name: getattr(record, one.name) for one in fields(record)
-        if one.name not in (*_ARRAYS, *_WORDS) and getattr(record, one.name) is not None
+        if one.name not in (*_ARRAYS, "series", *_WORDS) and getattr(record, one.name) is not None
     }  # fmt: skip
     digest = hashlib.sha256(b"".join(array.tobytes() for array in _arrays(record).values()))
     return {**found, "sha256": digest.hexdigest()}

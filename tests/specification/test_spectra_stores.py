@@ -67,7 +67,8 @@ def same(one, other):
 @pytest.mark.parametrize(
     ("records", "cells"),
     [(suite(), 10**6), (suite(), 12), (suite(), 25), (suite(quantity="displacement"), 40),
-     (suite(5, unit="g", interpolation="cubic"), 400)],
+     (suite(5, unit="g", interpolation="cubic"), 400),
+     ([fm.Record.pulse("half-sine", 1.0, 3.0), *suite(2)], 25)],
 )  # fmt: skip
 def test_a_store_is_the_spectra_to_the_bit(tmp_path, records, cells):
     axes = AXES | ({"friction": ["0.1 g", "0.3 g"]} if records[0].unit else {})
@@ -78,6 +79,8 @@ def test_a_store_is_the_spectra_to_the_bit(tmp_path, records, cells):
     again = opened(path).study  # as workers build it
     assert again.description("s") == wanted.description("s")
     np.testing.assert_array_equal(again.records[-1].values, records[-1].values)
+    for found, given in zip(again.records[0].series or (), records[0].series or (), strict=True):
+        np.testing.assert_array_equal(found, given)  # of pulses, which are exact between samples
 
 
 def test_contacts_with_a_spring(tmp_path):

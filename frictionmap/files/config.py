@@ -33,6 +33,8 @@ _SECTIONS: dict[str, tuple[str, ...] | None] = {
     **{section: names(section) for section in KEYS if section},
     "axes": None,
 }
+#: Keys of contacts that [system] has not.
+_OF_CONTACTS = ("kind", "ratio", "stiffness", "law", "law_file")
 #: Key of [grid] in the place of beta: friction over the normal force of [units].
 _COEFFICIENT = "friction_coefficient"
 
@@ -221,7 +223,10 @@ def _override(tree: dict, parts: list[str], value: object, override: str) -> Non
 def unknown_key(key: str, section: str, valid: Sequence[str]) -> InputError:
     """Return an error that names an unknown key and the valid ones."""
     name = f"{section}.{key}" if section else key
-    return InputError(f"unknown key {name!r}{checks.nearest(key, valid)}; valid: {', '.join(valid)}")
+    hint = checks.nearest(key, valid)
+    if "contacts" in valid and key in _OF_CONTACTS:
+        hint = " (it is a key of an entry of [[system.contacts]])"
+    return InputError(f"unknown key {name!r}{hint}; valid: {', '.join(valid)}")
 
 
 def names_of_tables() -> tuple[str, ...]:
@@ -366,7 +371,25 @@ def common_tables(tree: Mapping[str, object], path: Path, wanted: Sequence[Wante
     return Common(title, system, units, (path, *_matrix_files(described)))
 
 
+def command_for(tree: Mapping[str, object]) -> str:
+    """The command that computes from a configuration, told by its tables."""
+    if "grid" in tree:
+        return "map"
+    commands = {"data": "identify", "history": "history", "spectrum": "spectrum", "record": "history"}
+    return next((command for table, command in commands.items() if table in tree), "map")
+
+
+def _refuse_motions(tree: Mapping[str, object]) -> None:
+    """Refuse a configuration of motions in time, which has no grid of steady states."""
+    if (command := command_for(tree)) in ("history", "spectrum"):
+        raise InputError(
+            "cannot compute steady states from a configuration without [grid]: it describes motions in time; "
+            f"use frictionmap {command}"
+        )
+
+
 def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None) -> Config:
+    _refuse_motions(tree)
     wanted = _wanted(tree)
     title, system, units, files = common_tables(tree, path, wanted)
     settings, borders = _without_borders(_table(tree, "solver"))

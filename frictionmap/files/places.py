@@ -182,7 +182,7 @@ def _check(path: Path, overwrite: bool, inputs: Sequence[Path], name: str) -> No
         if not stat.S_ISREG(mode):  # /dev/null, say: it would be replaced by a file
             raise InputError(f"{name} must be an ordinary file; got {path}")
         for given in inputs:
-            if os.path.samefile(given, target):
+            if given.exists() and os.path.samefile(given, target):  # who reads it refuses a missing one
                 raise InputError(f"cannot write {path}: it is the input file {given}; use another {name}")
         if not overwrite:
             raise InputError(f"cannot write {path}: it already exists; use --overwrite or another {name}")

@@ -42,6 +42,7 @@ from ..datasets.schema import (
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError, naming
 from .checksums import RECORD, attributes_of, changed_description, damaged_chunk
+from .config import command_for, parse
 from .designs import design_form
 from .estimates import estimates_form
 from .motions import motions_form
@@ -107,7 +108,7 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
     if path.suffix == ".toml":
         raise InputError(
             f"cannot read results from {path}: it is a configuration; compute it first, "
-            f"e.g. frictionmap map {path}"
+            f"e.g. frictionmap {_command_of(path)} {path}"
         )
     # no variable of the package is a time, even with such units
     options: dict = {"engine": "netcdf4"}
@@ -135,6 +136,14 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
                 if not _from_the_file(error):
                     raise
                 raise damaged(path, error) from None
+
+
+def _command_of(path: Path) -> str:
+    """The command that computes from a configuration; map where it cannot be read."""
+    try:
+        return command_for(parse(path.read_text(encoding="utf-8")))
+    except (OSError, ValueError):
+        return "map"
 
 
 def _is_file(path: Path) -> bool:

@@ -236,7 +236,7 @@ def friction_law(given: Any) -> FrictionLaw:
             )
     for key in needed:
         if key not in given:
-            raise InputError(f"law.{key}", f"must be given: a law is {{ {', '.join(valid)} }}")
+            raise InputError(f"law.{key}", f"must be given in a law {{ {', '.join(valid)} }}; got none")
     try:
         return formula_law(**given) if "formula" in given else FrictionLaw(**given)
     except InputError as error:

@@ -40,6 +40,7 @@ class Motions:
     units: Units | None
     records: tuple[Record, ...]
     arguments: Mapping[str, Any]  # of `history`
+    friction: str  # the key of beta in the configuration
 
     def follow(self, records: Sequence[Record] | None = None, **options: Any) -> xr.Dataset:
         """Follow the motions, or those under other records and with other arguments; errors name keys."""
@@ -52,6 +53,8 @@ class Motions:
             where = error.where.partition("[")[0].partition(".")[0]
             table = "record" if where in _OF_MOTIONS else "history"
             given = where in (*_OF_MOTIONS, *self.arguments)
+            if where == "beta":
+                error = error.renamed(self.friction + error.where.removeprefix("beta"))
             raise (within(table, error) if given else error) from None
 
 
@@ -81,14 +84,16 @@ def _records(tree: Mapping[str, Any], path: Path) -> tuple[tuple[Record, ...], t
         raise (within("record", error) if error.where else error) from None
 
 
-def _under_one_name(given: dict[str, Any], table: str, name: str, other: str) -> None:
-    """Put the friction under the name that a function takes."""
+def _under_one_name(given: dict[str, Any], table: str, name: str, other: str) -> str:
+    """Put the friction under the name that a function takes; return that which the table has."""
     if other in given:
         if name in given:
             raise InputError(
                 "cannot use", f"{table}.{other}", f"with {table}.{name}: both are the friction; omit one"
             )
         given[name] = given.pop(other)
+        return other
+    return name
 
 
 def _count(*axes: object) -> int:
@@ -130,7 +135,7 @@ def load_motions(path: str | Path, overrides: Sequence[str] = ()) -> Motions:
     records, files = _records(tree, path)
     given, record = dict(checked_table(tree, "history")), checked_table(tree, "record")
     arguments = {name: record[name] for name in _OF_MOTIONS if name in record}
-    _under_one_name(given, "history", "beta", "friction")
+    friction = _under_one_name(given, "history", "beta", "friction")
     start = given.get("start")
     if isinstance(start, str) and start != "rest":
         given["start"] = str(path.parent / start)
@@ -145,6 +150,7 @@ def load_motions(path: str | Path, overrides: Sequence[str] = ()) -> Motions:
         common.units,
         records,
         arguments,
+        friction,
     )
 
 

@@ -54,7 +54,8 @@ class Grid(NamedTuple):
 def _axis(given: Any, name: str, **ends: float) -> np.ndarray:
     values = np.atleast_1d(checks.array(given, name))
     if values.ndim != 1 or not values.size:
-        raise InputError(name, f"must be a number or a list of numbers; got {checks.one_line(given)}")
+        shown = given.tolist() if isinstance(given, np.ndarray) else given
+        raise InputError(name, f"must be a number or a list of numbers; got {checks.one_line(shown)}")
     found = np.array(
         [checks.number(value, f"{name}[{k}]", **ends) for k, value in enumerate(values.tolist())]
     )

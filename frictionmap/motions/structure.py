@@ -38,7 +38,7 @@ def structure_of(system: System) -> Structure:
         raise InputError(
             "cannot use",
             "normal_load",
-            "in a motion in time, whose load has no period; give the contact a normal_record",
+            "in a motion in time: its load has no period; give the contact a normal_record",
         )
     modal = modal_system(system)
     spring = springs(general)

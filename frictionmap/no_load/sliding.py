@@ -69,7 +69,8 @@ def slope_limit(
     """
     if not np.linalg.eigvals(_companion(mass, damping, stiffness)).real.max() < 0.0:
         raise InputError(
-            "damping", "must act on every mode for the limit of a falling slope: without it, any slope grows"
+            "damping",
+            "must act on every mode; got a mode without it, in which vibration grows under any falling slope",
         )
     n = mass.shape[0]
     zero, edge = np.zeros((n, n)), vector[:, np.newaxis]

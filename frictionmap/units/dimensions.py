@@ -311,7 +311,9 @@ def _columns_in_ratios(columns: Mapping[str, Any], name: str, scales: Scales) ->
         key = _varied_key(str(given), column)
         ratio = _axis_key(key)[1]
         if ratio in found:
-            raise InputError("cannot use", f"{name}.{given}", f"beside another {ratio}; omit one")
+            raise InputError(
+                "cannot use", f"{name}.{given}", f"beside another {ratio}: both give the same axis; omit one"
+            )
         found[ratio] = _axis_ratios(column, key, f"{name}.{given}", scales)
     return found
 

@@ -34,7 +34,7 @@ FORMS = (
 )
 
 #: Templates that pass another message on, with the place it is about: {} is what is filled in.
-PASSED_ON = (r"(.*: )?\{\}", r"\{\}.*")
+PASSED_ON = (r"(.*: )?\{\}", r"\{\}.*", r"law_file: \{\} in \{\}")
 
 TABLE = r"""
 # Configurations and --set
@@ -48,6 +48,20 @@ map latin.toml
     cannot read configuration latin.toml: it is not text in UTF-8; save it as UTF-8
 map rig.toml
     cannot compute from a configuration with [data]: it describes measured data; use frictionmap identify
+map pulse.toml
+    cannot compute steady states from a configuration without [grid]: it describes motions in time; use frictionmap history
+curves spectra.toml
+    cannot compute steady states from a configuration without [grid]: it describes motions in time; use frictionmap spectrum
+history pulse.toml --set history.friction=-1
+    history.friction must be >= 0; got -1
+history pulse.toml --set history.friction=[0.1,-1]
+    history.friction[1] must be >= 0; got -1
+history pulse.toml --set history.friction=[]
+    history.friction must be a number or a list of numbers; got []
+history pulse.toml --set history.beta=0.1
+    cannot use history.friction with history.beta: both are the friction; omit one
+map good.toml --set 'system.law={speed=[0.0,1.0],factor=[1.0,0.8]}'
+    unknown key 'system.law' (it is a key of an entry of [[system.contacts]]); valid: ...
 map good.toml --set titel=x
     unknown key 'titel' (did you mean title?); valid: title, system, grid, solver, curves, design, record, history, spectrum, units, axes
 map good.toml --set title=1
@@ -265,7 +279,7 @@ map good.toml -o old.zarr
 map good.toml -o folder.zarr --overwrite
     cannot overwrite folder.zarr: the folder is not a store; use another -o
 curves good.toml -o a.zarr
-    cannot write a.zarr: only `map` can write a .zarr store; use another -o
+    cannot write a.zarr: only `map` and `spectrum` can write a .zarr store; use another -o
 response good.toml --r 1
     frictionmap response: the following arguments are required: --beta (see frictionmap response --help)
 response good.toml --r 0 --beta 1
@@ -288,6 +302,14 @@ info folder
     cannot read folder: it is not a file; give a file written by frictionmap
 info good.toml
     cannot read results from good.toml: it is a configuration; compute it first, e.g. frictionmap map good.toml
+info rig.toml
+    cannot read results from rig.toml: it is a configuration; compute it first, e.g. frictionmap identify rig.toml
+plot pulse.toml
+    cannot read results from pulse.toml: it is a configuration; compute it first, e.g. frictionmap history pulse.toml
+info spectra.toml
+    cannot read results from spectra.toml: it is a configuration; compute it first, e.g. frictionmap spectrum spectra.toml
+info typo.toml
+    cannot read results from typo.toml: it is a configuration; compute it first, e.g. frictionmap map typo.toml
 info foreign.nc
     cannot read foreign.nc: its source is 'not given'; give a file written by frictionmap
 info binary.nc
@@ -517,6 +539,8 @@ identify empty.toml
 identify rig.toml --set data.kind=decay
     data.kind must be one of free-decay, forced, record, sweep, loop; got 'decay' (did you mean free-decay?)
 identify rig.toml --set data.file=none.csv
+    cannot read none.csv: No such file or directory; check data.file
+identify rig.toml --set data.file=none.csv -o old.nc --overwrite
     cannot read none.csv: No such file or directory; check data.file
 identify rig.toml --set data.file=1
     data.file must be the path of a file of measured data; got 1
@@ -878,6 +902,9 @@ def folder(tmp_path_factory):
     for name, text in {
         "good.toml": "[system]\n[grid]\nr = 1.0\nbeta = { start = 0.0, stop = 1.0, step = 0.5 }\n",
         "question.toml": "[system]\ndamping_ratios = 0.05\n[design]\nband = [0.5, 1.5]\n",
+        "pulse.toml": '[system]\n[record]\npulse = { kind = "half-sine", amplitude = 1.0, duration = 3.0 }\n'
+        "[history]\nfriction = 0.1\n",
+        "spectra.toml": "[record]\n[spectrum]\nperiod = 1.0\nfriction = 0.1\n",
         "empty.toml": "",
         "typo.toml": "a =\n",
         "old.toml": "",

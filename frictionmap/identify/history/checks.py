@@ -149,7 +149,7 @@ def checked_held(
 
 def _check_channels(chosen: Sequence[str], is_force: bool, order: int) -> None:
     if "delay" in chosen and order == 2:
-        raise InputError("cannot fit delay of accelerations, which jump; remove delay from free")
+        raise InputError("cannot fit delay: accelerations jump; remove delay from free")
     if "gain" in chosen and "stiffness" in chosen and is_force:
         raise InputError(
             "cannot fit gain together with stiffness: the motion depends on their product only; hold one "

@@ -50,7 +50,8 @@ def _steady(rig: Rig, table: Table) -> xr.Dataset:
     for key in OPTIONS:
         if key.name in rig.fit:
             raise InputError(
-                f"cannot use fit.{key.name} with steady motions: add fit.method = 'history', or remove it"
+                f"cannot use fit.{key.name} with steady motions: it is of another method; "
+                "add fit.method = 'history', or remove it"
             )
     contact, reference = one_mass_on_base(rig)
     check_columns(rig, tuple(_WANTED))

@@ -9,6 +9,8 @@ from scipy.interpolate import CubicSpline
 from shaken_masses import STEP, TURN, base_motion, marched
 
 import frictionmap as fm
+from benchmarks.measures.coverage import KINDS
+from benchmarks.measures.coverage.histories import CASES
 from frictionmap._kernels.history import tangents
 from frictionmap.errors import InputError
 from frictionmap.identify.history.drive import FORCE, Drive
@@ -263,3 +265,13 @@ def test_a_rig_with_a_hammer(tmp_path):
     assert abs(found["f_n"] / 5.0 - 1.0) < 1e-4
     with pytest.raises(InputError, match=r"cannot use fit.sigma_drive with steady motions"):
         identify(load_rig(tmp_path / "hit.toml", ["fit.method=steady"]))
+
+
+def test_noise_of_the_drive_moves_the_least_sum():
+    """A hammer's record whose least sum without that noise leads to a minimum 12 standard errors away."""
+    place = [case.name for case in CASES].index("hammer, gate")
+    made = CASES[place].make(np.random.default_rng([list(KINDS).index("history"), place, 54]))
+    ds = made.fit()
+    for name, truth in made.truth.items():
+        one = ds.sel(parameter=name)
+        assert abs(float(one["estimate"]) - truth) < 4.0 * float(one["standard_error"])

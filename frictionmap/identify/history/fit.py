@@ -23,6 +23,9 @@ _CLOSE = (0.98, 1.0, 1.02), (-0.04, 0.0, 0.04)
 #: How often samples beside events are chosen again, and the covariance is renewed.
 _MASKED, _RENEWED = 3, 2
 
+#: Standard deviations of chi square beyond which a record is not explained.
+_UNEXPLAINED = 4.0
+
 #: Minima whose chi square is larger by less than this are possible as well.
 _POSSIBLE = 10.0
 
@@ -71,15 +74,55 @@ def fit_history(given: Measured, held: np.ndarray, noise: Noise) -> HistoryFit:
     whitening = white(keep, sigma)
     drive = noise.sigma_drive
     drive = noise_above_band(given.drive.values) if drive is None else drive
-    for _ in range(_RENEWED if drive > 0.0 else 0):
-        whitening = with_drive(model, model.course(best.values), keep, noise.sigma_x, drive)
-        best = minimise(problem_of(model, held, whitening), best.values)
+    if drive > 0.0:
+        whitening, best = _with_drive_noise(model, held, keep, (noise.sigma_x, drive), [best, *minima])
     problem = problem_of(model, held, whitening)
     best = minimise(problem, best.values) if drive == 0.0 else best
     if np.isnan(held[MU]):
         best = min([best, *(minimise(problem, one) for one in _close(held, best))], key=lambda one: one.sum)
     course = model.course(best.values)
     return HistoryFit(model, held, problem, best, whitening, course, others, drive)
+
+
+def _with_drive_noise(
+    model: Model,
+    held: np.ndarray,
+    keep: np.ndarray,
+    sigmas: tuple[float | None, float],
+    minima: list[Solution],
+) -> tuple[Whitening, Solution]:
+    """The least sum with the noise of the drive, and its covariance.
+
+    The least of the `minima` without that noise, the first, may lie beside the least with it.  Where the
+    record is not explained from there, the descent begins from the others too, and beside it.
+
+    sigmas : of the mass, None: from the record; of the drive
+    """
+    best = minima[0]
+
+    def renewed() -> tuple[Whitening, Problem]:
+        whitening = with_drive(model, model.course(best.values), keep, *sigmas)
+        return whitening, problem_of(model, held, whitening)
+
+    for _ in range(_RENEWED):
+        whitening, problem = renewed()
+        best = minimise(problem, best.values)
+    for _ in range(_RENEWED):
+        if best.sum <= keep.size + _UNEXPLAINED * np.sqrt(2.0 * keep.size):
+            break
+        starts = [*(one.values for one in minima[1:]), *_beside(held, best)]
+        least = min((minimise(problem, one) for one in starts), key=lambda one: one.sum)
+        if not best.sum - least.sum > CHANCE:
+            break
+        best = least
+        whitening, problem = renewed()
+        best = minimise(problem, best.values)
+    return whitening, best
+
+
+def _beside(held: np.ndarray, best: Solution) -> list[np.ndarray]:
+    """Starts with the other frictions beside the least sum."""
+    return [one for one in _close(held, best) if one[X_F] != best.values[X_F] and one[MU] == best.values[MU]]
 
 
 def _with_spring_states(model: Model, held: np.ndarray, best: Solution) -> Solution:

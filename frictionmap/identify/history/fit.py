@@ -110,7 +110,7 @@ def _with_drive_noise(
     for _ in range(_RENEWED):
         if best.sum <= keep.size + _UNEXPLAINED * np.sqrt(2.0 * keep.size):
             break
-        starts = [*(one.values for one in minima[1:]), *_beside(held, best)]
+        starts = [*(one.values for one in minima[1:]), *_neighbours(held, best)]
         least = min((minimise(problem, one) for one in starts), key=lambda one: one.sum)
         if not best.sum - least.sum > CHANCE:
             break
@@ -120,7 +120,7 @@ def _with_drive_noise(
     return whitening, best
 
 
-def _beside(held: np.ndarray, best: Solution) -> list[np.ndarray]:
+def _neighbours(held: np.ndarray, best: Solution) -> list[np.ndarray]:
     """Starts with the other frictions beside the least sum."""
     return [one for one in _close(held, best) if one[X_F] != best.values[X_F] and one[MU] == best.values[MU]]
 

@@ -287,7 +287,7 @@ def _subject(options: Options) -> "Scene | Motions":
         return scene_of(load_config(options.config, options.overrides, lambda *_: None))
     if "spectrum" in tree and "system" not in tree:
         raise InputError(
-            "the page shows motions of one system; a configuration of spectra has none: use "
+            "cannot open a page of spectra: it shows motions of one system; use "
             f"frictionmap spectrum {options.config}, or add a table [system]"
         )
     from ..explorer.in_time import check

@@ -177,7 +177,7 @@ def with_file(motions: Motions, name: str, body: bytes) -> Motions:
         It is no record, or does not go with the system; or there are too many.
     """
     if len(motions.records) >= _MOST_RECORDS:
-        raise InputError(f"cannot take more than {_MOST_RECORDS} records: start the page again")
+        raise InputError(f"cannot add a record: the page has {_MOST_RECORDS} already; start it again")
     with tempfile.TemporaryDirectory(prefix="frictionmap-") as folder:
         path = Path(folder) / name
         path.write_bytes(body)

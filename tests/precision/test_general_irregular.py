@@ -391,7 +391,7 @@ def test_the_order_of_release_may_not_matter(mu, system):
         system = fm.System(
             contacts=walls, mass_ratios=[1.0] * 3, stiffness_ratios=[1.0] * 3, damping_ratios=0.02
         )
-    r, beta = np.linspace(0.3, 1.4, 8), np.linspace(0.1, 0.6, 6)
+    r, beta = np.linspace(0.3, 1.4, 8), np.linspace(0.1, 0.58, 7)
     ds = fm.sweep(system, r, beta, [mu], outputs=["regime", "release_order"])
     assert (ds.regime == regimes.STICK_SLIP).sum() > 20
     assert (ds.release_order == 0).all()

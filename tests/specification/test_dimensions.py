@@ -55,6 +55,9 @@ IN_TABLES = {
         'load_harmonics = [{ n = 1, mass = 1, im = "80 N" }]\n' + UNITS, first_harmonic, 0.8j),
     "contacts[].force": (
         'contacts = [{ force = "50 N" }]\n' + UNITS, lambda s: s.contacts[0].force, 0.5),
+    "contacts[].law.speed": (
+        'contacts = [{ law = { speed = ["0 m/s", "0.2 m/s"], factor = [1, 0.8] } }]\n' + UNITS,
+        lambda s: list(s.contacts[0].law.speed), [0.0, 0.2 * 500e3 / (100 * OMEGA)]),
     "contacts[].wall_velocity": (
         'contacts = [{ wall_velocity = "200 mm/s" }]\n' + UNITS, lambda s: s.contacts[0].wall_speed,
         0.2 * 500e3 / (100 * OMEGA)),
@@ -114,6 +117,7 @@ DIMENSIONLESS = {
     *(f"system.{place}normal_load[].{name}" for place in ("", "contacts[].")
       for name in ("n", "amplitude", "phase_deg", "re", "im")),
     *(f"system.contacts[].{name}" for name in ("masses[]", "ratio", "ratio[]", "mu")),
+    *(f"system.contacts[].law.{name}" for name in ("factor[]", "slope", "kinetic", "viscous", "error")),
     "grid.mu", "grid.friction_coefficient",
     "solver.cycles", "solver.tolerance", "solver.steps", "curves.harmonics",
     "design.mu", "design.second", "design.ratio[]", "design.spread", "design.quantile",
@@ -294,7 +298,7 @@ beta = "10 N"
 def test_all_that_a_question_needs_is_asked_for_at_once(tmp_path):
     path = tmp_path / "question.toml"
     path.write_text('[system]\n[design]\nquestion = "at-most"\nband = ["1 Hz", "2 Hz"]\nlimit = "2 mm"\n')
-    with pytest.raises(InputError, match=r"natural_frequency .* and units\.load .* and units\.stiffness$"):
+    with pytest.raises(InputError, match=r"natural_frequency .* and units\.load .* and units\.stiffness, such as "):
         load_design(path)
 
 

@@ -473,5 +473,5 @@ def test_a_matrices_file_of_that_name_is_not_taken_for_the_one_of_a_study(tmp_pa
 def test_stores_are_of_maps(tmp_path, capsys, command):
     (tmp_path / "study.toml").write_text(CONFIG[: CONFIG.index("[axes]")])
     assert main([command, str(tmp_path / "study.toml"), "-o", str(tmp_path / "out.zarr")]) == 2
-    assert "only `map` can write a .zarr store" in capsys.readouterr().err
+    assert "only `map` and `spectrum` can write a .zarr store" in capsys.readouterr().err
     assert not (tmp_path / "out.zarr").exists()

@@ -298,7 +298,9 @@ beta = "10 N"
 def test_all_that_a_question_needs_is_asked_for_at_once(tmp_path):
     path = tmp_path / "question.toml"
     path.write_text('[system]\n[design]\nquestion = "at-most"\nband = ["1 Hz", "2 Hz"]\nlimit = "2 mm"\n')
-    with pytest.raises(InputError, match=r"natural_frequency .* and units\.load .* and units\.stiffness, such as "):
+    with pytest.raises(
+        InputError, match=r"natural_frequency .* and units\.load .* and units\.stiffness, such as "
+    ):
         load_design(path)
 
 

@@ -152,8 +152,8 @@ def test_workers_are_interrupted_without_a_word_of_theirs(tmp_path, to):
     assert (run.returncode, output) == (130, "")
     done, blocks = map(int, found.groups())
     kept = opened(tmp_path / "out.zarr").marks()
-    assert done < blocks == kept.size
-    assert done <= kept.sum()  # workers complete what they have begun: the last blocks, too
+    assert done <= blocks == kept.size
+    assert done <= kept.sum()  # the workers may have completed the last blocks, too
     assert kept.any()
     assert blocks >= 8
     if to == "the program":

@@ -36,8 +36,8 @@ stiffness_ratios = [1.0, 1.0, 1.0, 1.0, 1.0]
 damping_ratios = 0.01
 contact_masses = [3]
 [grid]
-r = { start = 0.05, stop = 2.0, num = 100 }
-beta = { start = 0.0, stop = 1.2, num = 100 }
+r = { start = 0.05, stop = 2.0, num = 400 }
+beta = { start = 0.0, stop = 1.2, num = 200 }
 mu = [1.5]
 """
 ONE_LINE = re.compile(
@@ -152,8 +152,7 @@ def test_workers_are_interrupted_without_a_word_of_theirs(tmp_path, to):
     assert (run.returncode, output) == (130, "")
     done, blocks = map(int, found.groups())
     kept = opened(tmp_path / "out.zarr").marks()
-    assert done <= blocks == kept.size
-    assert done <= kept.sum()  # the workers may have completed the last blocks, too
+    assert done <= kept.sum() < blocks == kept.size
     assert kept.any()
     assert blocks >= 8
     if to == "the program":

@@ -16,7 +16,6 @@ from ..model.shown import Shown
 from ..units.table import UNITS, known_unit, units_of
 from .baseline import BASELINES, corrected
 from .densities import density_of
-from .formats.files import Given, read_series
 from .formats.series import Series
 from .formulas import LAWS, Corners, checked_pulse
 from .formulas import pulse as pulse_samples
@@ -189,6 +188,8 @@ class Record(Shown):
         if not isinstance(path, (str, os.PathLike)):
             raise InputError(f"path must be the path of a file; got {checks.one_line(path)}")
         file = Path(path)
+        from .formats.files import Given, read_series  # with `identify`: not before a file is read
+
         series = read_series(file, Given(quantity, unit, dt, decimal, columns))
         if series.values.size < 2:
             raise InputError(f"cannot read {file}: a record has at least 2 samples; got {series.values.size}")

@@ -1,8 +1,8 @@
-"""Taylor series of the motion in one scan step: how many terms it has, and where it is zero."""
+"""Taylor series of the motion in one step: how many terms it has, its value, and where it is zero."""
 
 import math
 
-from .compiler import kernel
+from .compiler import inner_kernel, kernel
 
 #: Largest number of Taylor terms, for the lowest allowed number of scan steps per period.
 MAX_TERMS = 44
@@ -40,6 +40,24 @@ def series_terms(steps):
         terms += 1
         size *= turn / terms
     return turn, terms
+
+
+@inner_kernel
+def series_value(row, terms, x):
+    """Value of a series of this number of terms."""
+    sum_ = 0.0
+    for k in range(terms - 1, -1, -1):
+        sum_ = sum_ * x + row[k]
+    return sum_
+
+
+@inner_kernel
+def series_slope(row, terms, x):
+    """Its derivative."""
+    sum_ = 0.0
+    for k in range(terms - 1, 0, -1):
+        sum_ = sum_ * x + k * row[k]
+    return sum_
 
 
 @kernel

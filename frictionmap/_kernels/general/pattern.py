@@ -14,7 +14,7 @@ from ..compiler import kernel
 from .laws.coulomb import TOGETHER
 from .laws.kinds import has_constraint, is_constrained, keeps_force
 from .laws.speed import factor_at, set_segments
-from .problem import F, H, P, Q, force_row
+from .problem import F, H, P, Q, force_row, slide_velocity
 from .row import set_channels
 from .series import factor_held, solve_held
 
@@ -212,18 +212,6 @@ def _arrives_too(problem, row, motion, box, j):
     for d in range(channels):
         w -= problem.base[j, d] * series[modes + d, 1]
     return abs(w) <= TOGETHER * size and motion.sense[j] * box[FREE, j] <= 0.0
-
-
-@kernel
-def slide_velocity(problem, row, motion, j):
-    """Velocity dz/dx of a contact relative to its wall; the series of the channels must be there."""
-    modes, channels = problem.push.shape
-    w = -row.numbers[H] * problem.belt[j]
-    for m in range(modes):
-        w += problem.chi[j, m] * motion.state[P, m]
-    for d in range(channels):
-        w -= problem.base[j, d] * motion.series[modes + d, 1]
-    return w
 
 
 @kernel

@@ -197,6 +197,18 @@ def normal_row(problem, j):
     return first_contact_row(problem) + 3 * problem.spring.size + j
 
 
+@kernel
+def slide_velocity(problem, row, motion, j):
+    """Velocity dz/dx of a contact relative to its wall; the series of the channels must be there."""
+    modes, channels = problem.push.shape
+    w = -row.numbers[H] * problem.belt[j]
+    for m in range(modes):
+        w += problem.chi[j, m] * motion.state[P, m]
+    for d in range(channels):
+        w -= problem.base[j, d] * motion.series[modes + d, 1]
+    return w
+
+
 @inner_kernel
 def is_rigid(problem, m):
     """Whether no spring acts against mode m: a rigid-body mode, whose place changes nothing else."""

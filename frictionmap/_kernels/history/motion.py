@@ -13,7 +13,7 @@ from ..general.follow import count_time, pass_event, prepare
 from ..general.laws.coulomb import first_event, reaches, watched_slope
 from ..general.laws.elastic import rest_springs
 from ..general.laws.kinds import has_constraint
-from ..general.pattern import BOX_ROWS, PARTICIPATES, settle, slide_velocity, stop_exactly
+from ..general.pattern import BOX_ROWS, PARTICIPATES, settle, stop_exactly
 from ..general.problem import (
     HALF,
     LOAD_TERMS,
@@ -27,6 +27,7 @@ from ..general.problem import (
     Row,
     force_row,
     normal_row,
+    slide_velocity,
     velocity_row,
 )
 from ..general.record import clear_record

@@ -7,7 +7,7 @@ it decides.
 import math
 
 from ..compiler import inner_kernel, kernel
-from ..taylor_series import MAX_POLISH, ONE_STEP, cubic_root, first_root, reversion
+from ..taylor_series import MAX_POLISH, ONE_STEP, cubic_root, first_root, reversion, series_value
 from .motion import RESOLVED, TOO_MANY_EVENTS
 from .spectrum_lanes import (
     ACC,
@@ -73,15 +73,6 @@ def stick(state, i):
     state[SENSE, i], state[SLIDES, i], state[HELD, i] = 0.0, 0.0, 1.0
     state[FORCE, i], state[LIMIT, i] = 0.0, state[STATIC, i]
     state[V, i] = state[ACC, i] = 0.0
-
-
-@inner_kernel
-def _value(row, terms, x):
-    """Value of a series."""
-    sum_ = 0.0
-    for k in range(terms - 1, -1, -1):
-        sum_ = sum_ * x + row[k]
-    return sum_
 
 
 @inner_kernel
@@ -174,17 +165,17 @@ def _keep_peak(state, i, row, terms, end):
     peak = state[PEAK, i]
     if size <= peak:
         return
-    peak = max(peak, abs(row[0]), abs(_value(row, terms, end)))
+    peak = max(peak, abs(row[0]), abs(series_value(row, terms, end)))
     level, place, width = 0, 0, end
     while True:
         left, slope = 0.0, 0.0
         for k in range(terms - 1, -1, -1):
             slope = slope * (place * width) + left
             left = left * (place * width) + row[k]
-        right = _value(row, terms, (place + 1) * width)
+        right = series_value(row, terms, (place + 1) * width)
         high = max(abs(left), abs(right)) + 0.125 * width * width * bend
         if level < _HALVINGS and abs(slope) <= bend * width and high > peak * _EQUAL:
-            peak = max(peak, abs(_value(row, terms, (place + 0.5) * width)))
+            peak = max(peak, abs(series_value(row, terms, (place + 0.5) * width)))
             level, place, width = level + 1, 2 * place, 0.5 * width
             continue
         place += 1
@@ -251,8 +242,8 @@ def _first_overload(lanes, i, side):
         if row[first] < 0.0:
             return 0.0
     x = first_root(row, first, terms)
-    if 0.0 < x <= 1.0 and abs(_value(row, terms, 1.0)) <= near:
-        middle = _value(row, terms, 0.5 + 0.5 * x)
+    if 0.0 < x <= 1.0 and abs(series_value(row, terms, 1.0)) <= near:
+        middle = series_value(row, terms, 0.5 + 0.5 * x)
         if abs(middle) <= near:
             return NONE  # reached at the end
     return x
@@ -327,7 +318,7 @@ def slide(lanes, i, h, base, terms):
     if found > 1.0 and sense * v <= 0.0:
         found = 1.0  # the last rounding error
     x = state[X, i] + h * end * place
-    pull = _value(lanes.series[LOAD], lanes.load_terms, end) - state[SQUARE, i] * x
+    pull = series_value(lanes.series[LOAD], lanes.load_terms, end) - state[SQUARE, i] * x
     resist = state[FORCE, i] + state[DAMPING, i] * v
     ends = (state[ACC, i], pull - resist)
     if base:

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..compiler import entry, inner_kernel, kernel
 from ..compiler.packed import packed
-from ..taylor_series import first_root
+from ..taylor_series import first_root, series_slope, series_value
 from .motion import RESOLVED, TOO_MANY_EVENTS
 
 #: Values of a motion.
@@ -74,22 +74,6 @@ class Work(NamedTuple):
     row: np.ndarray  # (1 + COLUMNS, TERMS) u, and its derivatives
     watched: np.ndarray  # (TERMS,)
     tangent: np.ndarray  # (3, COLUMNS)
-
-
-@inner_kernel
-def _value(row, terms, x):
-    sum_ = 0.0
-    for k in range(terms - 1, -1, -1):
-        sum_ = sum_ * x + row[k]
-    return sum_
-
-
-@inner_kernel
-def _slope(row, terms, x):
-    sum_ = 0.0
-    for k in range(terms - 1, 0, -1):
-        sum_ = sum_ * x + k * row[k]
-    return sum_
 
 
 @kernel
@@ -184,10 +168,10 @@ def _move(given, h, x, now, work):
     sliding = now[PHASE] != 0.0
     kappa = given.values[SPRING]
     motion = work.row[0]
-    way = _value(motion, given.terms, x) - motion[0]
+    way = series_value(motion, given.terms, x) - motion[0]
     for col in range(COLUMNS):
         row = work.row[1 + col]
-        u = _value(row, given.terms, x)
+        u = series_value(row, given.terms, x)
         if sliding:
             work.tangent[2, col] = now[PHASE] if col == _VALUE + FRICTION else 0.0
         else:
@@ -195,7 +179,7 @@ def _move(given, h, x, now, work):
             if col == _VALUE + SPRING:
                 work.tangent[2, col] += way
         work.tangent[0, col] = u
-        work.tangent[1, col] = _slope(row, given.terms, x) / h
+        work.tangent[1, col] = series_slope(row, given.terms, x) / h
 
 
 @inner_kernel
@@ -264,14 +248,14 @@ def _release(given, h, x, side, now, work):
     """Let a rigid contact go to `side` at a share x of the piece, and the derivatives with it."""
     w, friction, mu = given.values[FREQUENCY], given.values[FRICTION], given.values[STATIC]
     square = w * w
-    load = _value(work.load[0], 4, x)
+    load = series_value(work.load[0], 4, x)
     over = side * (load / square - now[U]) - mu * friction
     jump = x == 0.0 and over > _AT_LIMIT * mu * friction
     now[PHASE], now[V], now[Q] = side, 0.0, side * friction
     now[ACC] = side * square * ((mu - 1.0) * friction + (over if jump else 0.0))
-    rate = -side * _slope(work.load[0], 4, x) / (square * h)
+    rate = -side * series_slope(work.load[0], 4, x) / (square * h)
     for col in range(COLUMNS):
-        change = side * (work.tangent[0, col] - _value(work.load[1 + col], 4, x) / square)
+        change = side * (work.tangent[0, col] - series_value(work.load[1 + col], 4, x) / square)
         if col == _VALUE + FREQUENCY:
             change += 2.0 * side * load / (square * w)
         elif col == _VALUE + FRICTION:
@@ -336,12 +320,12 @@ def _advance(given, h, x, now, work):
     _fill_tangents(given, h, now, work)
     _move(given, h, x, now, work)
     row, terms = work.row[0], given.terms
-    u = _value(row, terms, x)
+    u = series_value(row, terms, x)
     if now[PHASE] == 0.0:
         now[Q] += given.values[SPRING] * (u - now[U])
-    now[U], now[V] = u, _slope(row, terms, x) / h
+    now[U], now[V] = u, series_slope(row, terms, x) / h
     w = given.values[FREQUENCY]
-    load = _value(work.load[0], 4, x)
+    load = series_value(work.load[0], 4, x)
     now[ACC] = load - 2.0 * given.values[RATIO] * w * now[V] - w * w * (u + now[Q])
 
 
@@ -374,7 +358,7 @@ def _piece(given, motion, k, begin, now, work):
     what = START
     if now[PHASE] != 0.0:
         _advance(given, h, x, now, work)
-        what = _end_slide(given, _value(work.load[0], 4, x), now, work)
+        what = _end_slide(given, series_value(work.load[0], 4, x), now, work)
     elif kappa > 0.0:
         _advance(given, h, x, now, work)
         _slip(given, side, now, work)

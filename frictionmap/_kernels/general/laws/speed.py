@@ -11,7 +11,7 @@ from ...compiler import inner_kernel, kernel
 from ...compiler.vectors import LANES, load, store, total
 from ..counts import CROSSINGS
 from ..crossings import first_zero
-from ..problem import TERMS, WATCHED, WIDTH, H, P, R, force_row, velocity_row
+from ..problem import TERMS, WATCHED, WIDTH, H, R, force_row, slide_velocity, velocity_row
 
 #: Sides of events at break points: the speed falls below the lower one, or exceeds the upper one.
 SLOWER, FASTER = 2, 3
@@ -42,13 +42,7 @@ def velocity_unit(row):
 @kernel
 def speed_of(problem, row, motion, j):
     """Speed of a contact over omega_1 P/k_1, from the state; the series of the channels must be there."""
-    modes, channels = problem.push.shape
-    w = -row.numbers[H] * problem.belt[j]
-    for m in range(modes):
-        w += problem.chi[j, m] * motion.state[P, m]
-    for d in range(channels):
-        w -= problem.base[j, d] * motion.series[modes + d, 1]
-    return abs(w) / velocity_unit(row)
+    return abs(slide_velocity(problem, row, motion, j)) / velocity_unit(row)
 
 
 @kernel

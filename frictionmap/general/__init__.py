@@ -6,8 +6,8 @@ module           what is in it
 problem          a system over r as arrays for the kernels
 observed         masses, drifts of storeys, accelerations, and the force on the base
 held             forces in contacts that do not slide, and the boundaries that follow from them
-normal_force     normal forces that move with the structure: no slip, steady sliding, flutter
 slopes           steady sliding under friction over speed: slopes of its fall, one-way sliding
+normal_force     normal forces that move with the structure: no slip, steady sliding, flutter
 loops            permanent sticking of contacts that close a loop
 closed_limits    friction without stops in closed form, where there is one
 no_stop          intervals of friction without stops

@@ -10,16 +10,9 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import eig
 
 from .held import largest
-
-#: A zero of a real function is real if its imaginary part is below this share of its size: double zeros are
-#: computed to half of the digits.
-_REAL = 1e-6
-
-#: Steps of Newton's method from the eigenvalues of a pencil, with half of the digits, to rounding.
-_POLISHED = 6
+from .slopes import POLISHED, REAL, finite_zeros, first_order, rates_with
 
 #: Growth below this share of the fastest rate is rounding: eigenvalues are compared between candidates, where
 #: they are simple.
@@ -146,13 +139,10 @@ def steady_sliding(
 
 def _roots(structure: Structure, stiffness: np.ndarray) -> np.ndarray:
     """Roots l of l^2 M + l C + K, (2 n,)."""
-    n = len(stiffness)
-    inverse = np.linalg.inv(structure.mass)
     if not structure.damping.any():  # from l^2: pairs without real parts keep none
-        squares = np.linalg.eigvals(-inverse @ stiffness).astype(complex)
+        squares = np.linalg.eigvals(-np.linalg.inv(structure.mass) @ stiffness).astype(complex)
         return np.concatenate((np.sqrt(squares), -np.sqrt(squares)))
-    first = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness, -inverse @ structure.damping]])
-    return np.linalg.eigvals(first).astype(complex)
+    return np.linalg.eigvals(first_order(structure.mass, structure.damping, stiffness)).astype(complex)
 
 
 class Limit(NamedTuple):
@@ -183,41 +173,18 @@ def sliding_limit(structure: Structure, contact: NormalSpring, sense: int) -> Li
     return Limit(np.inf, "")
 
 
-def _finite_zeros(pencil: np.ndarray, shift: np.ndarray) -> np.ndarray:
-    """Finite eigenvalues of pencil - l shift."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        zeros = eig(pencil, shift, right=False)
-    zeros = zeros[np.isfinite(zeros)]
-    return zeros[np.abs(zeros) < 1e12]  # infinite ones by rounding: no structure is as fast
-
-
 def _crossings(structure: Structure, contact: NormalSpring, sense: int) -> list[float]:
-    """phi at which a root may cross the imaginary axis, damped: where G(i o) = d.Z^-1 c is real.
-
-    The zeros of G(l) - G(-l) are those of a linear system of twice the order.
-    """
+    """phi at which a root may cross the imaginary axis, damped: where G(i o) = d.Z^-1 c is real."""
     n, c, d = contact.normal.size, contact.friction, contact.normal
     inverse, pressed = np.linalg.inv(structure.mass), _pressed(structure, contact)
-    a = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ pressed, -inverse @ structure.damping]])
     b, out = np.concatenate((np.zeros(n), inverse @ c)), np.concatenate((d, np.zeros(n)))
-    none = np.zeros((2 * n, 2 * n))
-    pencil = np.block(
-        [
-            [a, none, b[:, np.newaxis]],
-            [none, -a, b[:, np.newaxis]],
-            [out[np.newaxis], out[np.newaxis], np.zeros((1, 1))],
-        ]
-    )
-    shift = np.diag(np.append(np.ones(4 * n), 0.0))
     found = []
-    for zero in _finite_zeros(pencil, shift):
-        if zero.imag > 0.0 and abs(zero.real) <= _REAL * abs(zero):
-            o = float(zero.imag)
-            for _ in range(_POLISHED):
-                value, slope = _response(structure, pressed, contact, o)
-                o -= value.imag / slope.imag if slope.imag != 0.0 else 0.0
-            value, _ = _response(structure, pressed, contact, o)
-            found.append(-sense / (contact.stiffness * value.real))
+    for o in rates_with(first_order(structure.mass, structure.damping, pressed), b, out, -1.0):
+        for _ in range(POLISHED):
+            value, slope = _response(structure, pressed, contact, o)
+            o -= value.imag / slope.imag if slope.imag != 0.0 else 0.0
+        value, _ = _response(structure, pressed, contact, o)
+        found.append(-sense / (contact.stiffness * value.real))
     return found
 
 
@@ -252,10 +219,10 @@ def _meetings(structure: Structure, contact: NormalSpring, sense: int) -> list[f
         ]
     )
     found = []
-    for zero in _finite_zeros(pencil, shift):
-        if abs(zero.imag) <= _REAL * abs(zero):
+    for zero in finite_zeros(pencil, shift):
+        if abs(zero.imag) <= REAL * abs(zero):
             s = float(zero.real)
-            for _ in range(_POLISHED):
+            for _ in range(POLISHED):
                 x = np.linalg.solve(pressed - s * mass, c)
                 once = np.linalg.solve(pressed - s * mass, mass @ x)
                 twice = np.linalg.solve(pressed - s * mass, mass @ once)

@@ -128,11 +128,13 @@ class Page:
     def warm(self) -> None:
         """Import the computing modules, which takes longer than the browser needs to load the page."""
         try:
-            from . import cell, cut, example, pieces, queries, scene_description  # noqa: F401
-
+            self._import()
             self.jobs.listen()
         finally:
             self._warm.set()
+
+    def _import(self) -> None:
+        from . import cell, cut, example, pieces, queries, scene_description  # noqa: F401
 
     def rehearse(self, later: bool = False) -> None:
         """Compute small results of every kind, so that their kernels are compiled before the page needs them.
@@ -320,14 +322,8 @@ class MotionPage(Page):
             "/motion": self._motion,
         }
 
-    def warm(self) -> None:
-        """Import the computing modules."""
-        try:
-            from . import in_time  # noqa: F401
-
-            self.jobs.listen()
-        finally:
-            self._warm.set()
+    def _import(self) -> None:
+        from . import in_time  # noqa: F401
 
     def rehearse(self, later: bool = False) -> None:
         """Compute the first motion, so that kernels are compiled before the page needs them."""

@@ -372,7 +372,7 @@ def common_tables(tree: Mapping[str, object], path: Path, wanted: Sequence[Wante
 
 
 def command_for(tree: Mapping[str, object]) -> str:
-    """The command that computes from a configuration, told by its tables."""
+    """The command that computes from a configuration, by its tables."""
     if "grid" in tree:
         return "map"
     commands = {"data": "identify", "history": "history", "spectrum": "spectrum", "record": "history"}

@@ -8,6 +8,7 @@ from ... import checks
 from ...errors import InputError
 from ...units.table import MOTIONS, UNITS, units_of
 from ..parameters import PARAMETERS, checked_free, is_elastic, refuse_mu
+from ..signals.integration import derivative_order
 from ..signals.samples import finite_numbers, within
 from .drive import FORCE, Drive, gated
 from .model import NAMED, NAMES, Measured
@@ -39,8 +40,7 @@ def size_of(unit: str) -> float:
 
 def order_of(unit: str) -> int:
     """Order of the derivative of a displacement that has this unit; FORCE of a force."""
-    measures = UNITS[unit].measures
-    return MOTIONS.index(measures) if measures in MOTIONS else FORCE
+    return FORCE if UNITS[unit].measures == "force" else derivative_order(unit)
 
 
 def checked_measured(

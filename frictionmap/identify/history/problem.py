@@ -123,7 +123,7 @@ def problem_of(model: Model, held: np.ndarray, whitening: Whitening) -> Problem:
     floor, lowest, highest = (np.full(len(NAMES), edge) for edge in (-np.inf, -np.inf, np.inf))
     floor[[ZETA, MU]] = 0.0, 1.0
     lowest[[ZETA, MU, X_F, STATE_OF_SPRING]] = -0.2, 1.0, 0.0, -1.0
-    lowest[[SPRING, STIFFNESS, GAIN]] = 1e-9  # of what is above 0
+    lowest[[SPRING, STIFFNESS, GAIN]] = 1e-9  # above 0
     highest[[ZETA, STATE_OF_SPRING, SPRING]] = 2.0, 1.0, 1.0 / STIFFEST
     lowest[F_N], highest[F_N] = frequencies(given.time)
     far = longest_delay(given, held)

@@ -37,6 +37,33 @@ def values_in_si(ds: xr.Dataset, name: str, suffix: str, unit: str) -> tuple[np.
     return (ds[in_si].values, f" [{unit}]") if in_si in ds else (ds[name].values, "")
 
 
+def one_panel(ax: "Axes | None") -> "AxesArray":
+    """The given axes, or those of a new picture."""
+    if ax is not None:
+        return given_axes(ax, 1, "")
+    return new_figure(_WIDTH, _HEIGHT).subplots(1, 1, squeeze=False).ravel()
+
+
+def end_picture(ds: xr.Dataset, axes: "AxesArray", handles: list[Handle], caption: str) -> None:
+    """Give a new picture the title of the dataset, and the legend."""
+    title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
+    legend_below(axes[0].figure, handles, caption)
+
+
+def drawn_peak(ds: xr.Dataset) -> str:
+    """The peak of a spectrum that is drawn.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    name = next((one for one in ("amplitude", "acceleration_amplitude") if one in ds), None)
+    if name is None:
+        raise InputError("ds must hold amplitude or acceleration_amplitude to be drawn; got neither")
+    return name
+
+
 def draw_band(ax: Axes, at: np.ndarray, values: np.ndarray, colour: str) -> None:
     """Draw the median over records, and a band between their quartiles; values : (records, places)."""
     low, middle, high = np.quantile(values, [0.25, 0.5, 0.75], axis=0)
@@ -181,9 +208,8 @@ def plot_history(
     one = ds.squeeze(list(CELL)) if single else ds
     handles = _draw_traces(axes, one) if single else _draw_peaks(axes[0], ds)
     if ax is None:
-        title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
         motions = 1 if single else ds.sizes["record"] * ds.sizes["scale"]
-        legend_below(axes[0].figure, handles, caption_of(motions))
+        end_picture(ds, axes, handles, caption_of(motions))
     return axes
 
 
@@ -231,17 +257,11 @@ def plot_spectrum(
         The dataset is no spectrum, or has more than one mu or scale, or too many values of friction.
     """
     ds = to_draw(ds, "plot_spectrum", "spectrum")
-    name = next((one for one in ("amplitude", "acceleration_amplitude") if one in ds), None)
-    if name is None:
-        raise InputError("ds must hold amplitude or acceleration_amplitude to be drawn; got neither")
+    name = drawn_peak(ds)
     ds = ds.isel({dim: [0] for dim in ("mu", "scale")})
     beta = ds["beta"].values
     chosen = np.unique(np.linspace(0, beta.size - 1, min(beta.size, _MOST_LINES)).round().astype(int))
-    axes = (
-        new_figure(_WIDTH, _HEIGHT).subplots(1, 1, squeeze=False).ravel()
-        if ax is None
-        else given_axes(ax, 1, "")
-    )
+    axes = one_panel(ax)
     values = ds[name].isel(scale=0, mu=0).transpose("record", "period", "beta").values
     period = ds["period"].values
     handles: list[Handle] = []
@@ -255,6 +275,5 @@ def plot_spectrum(
     axes[0].set_ylabel(words_of(ds[name]))
     axes[0].set_ylim(bottom=0.0)
     if ax is None:
-        title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
-        legend_below(axes[0].figure, handles, caption_of(len(values)))
+        end_picture(ds, axes, handles, caption_of(len(values)))
     return axes

@@ -13,15 +13,21 @@ from ...motions.statistics import over_scale
 from ..drawing import with_options
 from ..options import FigureOptions
 from ..palette import LINES
-from ..panels import Handle, given_axes, legend_below, new_figure, title_figure
+from ..panels import Handle
 from ..shapes import check_holds, to_draw
-from .in_time import caption_of, draw_band, unit_of, values_in_si, words_of
+from .in_time import (
+    caption_of,
+    draw_band,
+    drawn_peak,
+    end_picture,
+    one_panel,
+    unit_of,
+    values_in_si,
+    words_of,
+)
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
-
-#: Size of a picture [inch].
-_WIDTH, _HEIGHT = 5.6, 4.0
 
 #: Periods that are drawn at most.
 _MOST_LINES = len(LINES)
@@ -57,15 +63,13 @@ def plot_incremental(
         The dataset is no spectrum, or has several scales, or too few values of friction.
     """
     ds = to_draw(ds, "plot_incremental", "spectrum")
-    name = next((one for one in ("amplitude", "acceleration_amplitude") if one in ds), None)
-    if name is None:
-        raise InputError("ds must hold amplitude or acceleration_amplitude to be drawn; got neither")
+    name = drawn_peak(ds)
     positive = ds["beta"].values[ds["beta"].values > 0.0]
     if positive.size < 2:
         raise InputError(f"ds must have at least 2 values of beta above 0; got {positive.size}")
     chosen = float(positive[positive.size // 2]) if friction is None else friction
     peaks = over_scale(ds.isel(mu=[0]), chosen, name).isel(mu=0).transpose("record", "period", "scale")
-    axes = _axes(ax)
+    axes = one_panel(ax)
     periods = ds["period"].values
     count = min(periods.size, _MOST_LINES)
     handles: list[Handle] = []
@@ -79,8 +83,7 @@ def plot_incremental(
     axes[0].set_xlim(0.0, float(peaks["scale"].max()))
     axes[0].set_ylim(bottom=0.0)
     if ax is None:
-        title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
-        legend_below(axes[0].figure, handles, caption_of(ds.sizes["record"]))
+        end_picture(ds, axes, handles, caption_of(ds.sizes["record"]))
     return axes
 
 
@@ -123,7 +126,7 @@ def plot_energies(
         values, joule = values_in_si(ds, name, "J", "J")
         whole = values.reshape(*values.shape[:4], -1).sum(axis=-1)  # of all contacts
         layers.append(whole[:, 0, 0].mean(axis=0))
-    axes = _axes(ax)
+    axes = one_panel(ax)
     words = ("lost in the contacts", "lost in the damping", "stored at the end")
     axes[0].stackplot(ds["beta"].values, layers, colors=LINES[:3], alpha=0.55, linewidth=0.0)
     axes[0].plot(ds["beta"].values, np.sum(layers, axis=0), color="black", linewidth=1.2)
@@ -134,12 +137,5 @@ def plot_energies(
     if ax is None:
         handles: list[Handle] = [Patch(color=LINES[k], alpha=0.55, label=one) for k, one in enumerate(words)]
         handles.append(Line2D([], [], color="black", label="put in"))
-        title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
-        legend_below(axes[0].figure, handles, "mean of the records" if ds.sizes["record"] > 1 else "")
+        end_picture(ds, axes, handles, "mean of the records" if ds.sizes["record"] > 1 else "")
     return axes
-
-
-def _axes(ax: "Axes | None") -> "AxesArray":
-    if ax is not None:
-        return given_axes(ax, 1, "")
-    return new_figure(_WIDTH, _HEIGHT).subplots(1, 1, squeeze=False).ravel()

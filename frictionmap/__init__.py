@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     from .model.contact import Contact
     from .model.friction_law import FrictionLaw
     from .model.periodic_load import PeriodicLoad
+    from .model.sectors import ring
     from .model.settings import Solver
     from .model.system import System
     from .motions.dataset import history
@@ -136,6 +137,7 @@ __all__ = [
     "plot_spectrum",
     "regimes",
     "response",
+    "ring",
     "shares",
     "spectrum",
     "stationary",
@@ -177,6 +179,7 @@ _HOME = {
     "plot_response": "plot",
     "plot_shares": "plot",
     "plot_spectrum": "plot",
+    "ring": "model.sectors",
     "response": "steady.response",
     "shares": "probabilities",
     "spectrum": "motions.spectra",

@@ -15,6 +15,7 @@ from .. import checks
 from ..datasets.provenance import to_toml
 from ..errors import InputError, naming
 from ..model.periodic_load import WAVEFORMS
+from ..model.sectors import in_full
 from ..model.settings import BORDERS, CurveSettings, Solver, curve_settings
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
@@ -285,6 +286,8 @@ def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, Any]
             f"system.matrices must be the path of an .npz file, or a table of arrays M, K and optionally C; "
             f"got {matrices!r}"
         )
+    if "sectors" in table:
+        return _build(in_full, {"given": table}, "system")
     return table
 
 

@@ -56,6 +56,30 @@ _MATRICES = either(
     ),
     table({"M": _NAME, "K": _NAME, "C": _NAME}, ("M", "K")),
 )
+_SECTORS = table(
+    {
+        "count": whole(least=3, most=64),
+        "mass": _MATRIX,
+        "stiffness": _MATRIX,
+        "coupling": either(
+            _MATRIX,
+            several(
+                table(
+                    {"masses": several(whole(least=1), 2, maxItems=2), "stiffness": number(above=0.0)},
+                    ("masses", "stiffness"),
+                )
+            ),
+        ),
+        "engine_order": whole(least=0),
+        "spread": table(
+            {"standard_deviation": number(above=0.0, most=0.2), "seed": whole(least=0)},
+            ("standard_deviation",),
+        ),
+        "mass_factors": several(number(above=0.0)),
+        "stiffness_factors": several(number(above=0.0)),
+    },
+    ("count", "mass", "stiffness"),
+)
 _RANGE = "a number, a list, { start, stop, step } or { start, stop, num }, ends included, or { values }"
 
 _ONE_MASS, _SOLVER, _CURVES = System(), Solver(), curve_settings()
@@ -438,6 +462,16 @@ KEYS: dict[str, tuple[Key, ...]] = {
             either(_NAME, _MATRICES),
             example='"frame.npz"',
             words='path of a file with all of them, or { M = "m.mtx", K = "k.mtx" }, or { M = [[...]], ... }',
+        ),
+        Key(
+            "sectors",
+            "instead of the ratios: a ring of sectors, each given once, under a load that travels round",
+            _SECTORS,
+            example="{ count = 24, mass = [[1.0]], stiffness = [[1.0]], "
+            "coupling = [{ masses = [1, 1], stiffness = 0.5 }], engine_order = 2 }",
+            words="{ count, mass, stiffness, coupling, engine_order, spread, mass_factors, "
+            "stiffness_factors }; "
+            'contacts and loads are those of a sector, and "next.1" is mass 1 of the next',
         ),
         Key(
             "reduce",

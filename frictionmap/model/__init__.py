@@ -21,6 +21,7 @@ matrices            mass, stiffness and damping matrices: small, dense, definite
 decoupling          the error of neglecting the damping that couples modes
 coupled_modes       structures whose damping couples their modes: responses to loads
 system              `System`: structure, damping, load, contact, and their valid values
+sectors             cyclic structures: a ring of sectors, each given once
 variations          further axes of a study: parameters of a system that vary
 held_structure      the structure held at its contact as oscillators
 ==================  ===================================================================================

@@ -118,6 +118,10 @@ DIMENSIONLESS = {
       for name in ("n", "amplitude", "phase_deg", "re", "im")),
     *(f"system.contacts[].{name}" for name in ("masses[]", "ratio", "ratio[]", "mu")),
     *(f"system.contacts[].law.{name}" for name in ("factor[]", "slope", "kinetic", "viscous", "error")),
+    *(f"system.sectors.{name}" for name in (
+        "count", "coupling[].masses[]", "engine_order", "spread.standard_deviation", "spread.seed",
+        "mass_factors[]", "stiffness_factors[]",
+    )),
     "grid.mu", "grid.friction_coefficient",
     "solver.cycles", "solver.tolerance", "solver.steps", "curves.harmonics",
     "design.mu", "design.second", "design.ratio[]", "design.spread", "design.quantile",
@@ -145,7 +149,10 @@ OF_RECORD = {
 }  # fmt: skip
 
 #: Entries of matrices: their units are those of `natural_frequency` and `stiffness` = "model".
-ENTRIES = {"system.matrices.M", "system.matrices.K", "system.matrices.C", "system.matrices.dofs"}
+ENTRIES = {
+    "system.matrices.M", "system.matrices.K", "system.matrices.C", "system.matrices.dofs",
+    *(f"system.sectors.{name}" for name in ("mass", "stiffness", "coupling", "coupling[].stiffness")),
+}  # fmt: skip
 
 
 def leaves(schema, name):

@@ -123,7 +123,10 @@ MOTIONS = {
         "time from which no contact moves again, over 1/omega_1",
         comment="the first sample at which this is proved; NaN where it is not",
     ),
-    "first_motion": _size("time of the first event, over 1/omega_1", comment="NaN without one"),
+    "first_motion": _size(
+        "time at which the first slide begins, over 1/omega_1",
+        comment="0 of a contact that slides at the beginning; NaN where none slides",
+    ),
     "status": Label(np.int8, "how the motion ended", CELL, STATUSES),
 }  # fmt: skip
 

@@ -82,13 +82,16 @@ def wall_shares(system: System) -> np.ndarray:
 
 
 def _base(system: System, general: ContactSystem, record: Record, pieces: Pieces) -> list[Channel]:
-    place, rate, acceleration = _motion_of_base(record, pieces)
     iota, still = np.ones(system.n), np.zeros(general.count)
-    found = [Channel(acceleration, -system.modes.mass @ iota, still, still)]
     walls = wall_shares(system)
+    grounded = not is_relative_damping(system) and system.modes.damping.any()
+    if record.quantity == "acceleration" and not walls.any() and not grounded:  # no integrals
+        return [Channel(pieces, -system.modes.mass @ iota, still, still)]
+    place, rate, acceleration = _motion_of_base(record, pieces)
+    found = [Channel(acceleration, -system.modes.mass @ iota, still, still)]
     if walls.any():
         found.append(Channel(place, np.zeros(system.n), walls, still, record.quantity != "displacement"))
-    if not is_relative_damping(system) and system.modes.damping.any():
+    if grounded:
         push = -system.modes.damping @ iota
         found.append(Channel(rate, push, still, still, record.quantity != "displacement"))
     return found

@@ -311,7 +311,7 @@ def _scalars(structure: Structure, motions: Motions, one: Found, asked: Asked) -
         "work_damping": kept.works[0] + walls - kept.record.works[0].sum() - (energy - before),
         "energy": energy, "events": kept.counts[0], "end_time": one.end,
         "asleep_time": one.asleep,
-        "first_motion": kept.events[0, 0] if kept.counts[0] else np.nan, "status": one.status,
+        "first_motion": kept.first[0], "status": one.status,
     }  # fmt: skip
 
 

@@ -68,11 +68,21 @@ def interpolated(times: np.ndarray, steps: np.ndarray, values: np.ndarray, how: 
         return Pieces(np.append(times, times[-1] + steps[-1]), steps, _filled([values]))
     if how == "linear":
         return Pieces(times, steps, _filled([values[:-1], np.diff(values)]))
+    return Pieces(times, steps, _filled(_spline(steps, values, ends)))
+
+
+def _spline(steps: np.ndarray, values: np.ndarray, ends: str) -> list[np.ndarray]:
+    """Terms of a spline: values and slopes are those of the pieces on both sides of a sample, to the bit.
+
+    Samples that are equally spaced are a distance of 1 apart: differences of times would round by more.
+    """
     from scipy.interpolate import CubicSpline  # loads slowly
 
-    spline = CubicSpline(np.concatenate(([0.0], np.cumsum(steps))), values, bc_type=ends)
-    scales = steps ** np.arange(4)[:, np.newaxis]
-    return Pieces(times, steps, _filled(list(spline.c[::-1] * scales)))
+    lengths = np.ones_like(steps) if (steps == steps[0]).all() else steps
+    knots = np.concatenate(([0.0], np.cumsum(lengths)))
+    slopes = CubicSpline(knots, values, bc_type=ends)(knots, 1)
+    rise, first, last = np.diff(values), lengths * slopes[:-1], lengths * slopes[1:]
+    return [values[:-1], first, 3.0 * rise - 2.0 * first - last, first + last - 2.0 * rise]
 
 
 def padded(terms: np.ndarray, count: int) -> np.ndarray:

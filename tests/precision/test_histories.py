@@ -86,7 +86,7 @@ def _check(row):
     stuck = ds.stuck_fraction.values.ravel() * ds.end_time.item()
     assert stuck == pytest.approx(wanted["stuck_time"], rel=1e-10)
     if wanted["events"]:
-        assert ds.first_motion.item() == pytest.approx(wanted["first_event"], rel=1e-11)
+        assert ds.event_time[..., 0].item() == pytest.approx(wanted["first_event"], rel=1e-11)
         assert ds.event_time[..., -1].item() == pytest.approx(wanted["last_event"], rel=1e-11)
     if wanted["asleep"]:
         size = np.abs([wanted["x_max"], wanted["x_min"]]).max()

@@ -7,6 +7,7 @@ module           what is in it
 ===============  ====================================================================
 kept             peaks, works, slides, events and samples of a motion in time
 tables           intervals in which nothing happens, by sums
+held             what is held stays where it is
 asleep           when a motion under no load has ended for all contacts
 motion           the motion under a record, and after it
 spectrum_lanes   eight oscillators of one mass through samples without events

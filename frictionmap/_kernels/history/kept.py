@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, inner_kernel, kernel
-from ..compiler.vectors import LANES, filled, load, store
-from ..general.crossings import slope_at, value_at
+from ..compiler.vectors import LANES, filled, load, magnitude, store, total
+from ..general.crossings import value_at
 from ..general.problem import (
     LOAD_TERMS,
     LONG,
@@ -19,6 +19,7 @@ from ..general.problem import (
     Q,
     first_contact_row,
     force_row,
+    padded,
 )
 from ..general.record import HIGH, HIGH_AT, LOW, LOW_AT, Record, keep_range, keep_works
 
@@ -32,6 +33,17 @@ PRESENT, LARGEST = 0, 1
 
 #: Places in `works`.
 OF_LOAD, OF_BASE = 0, 1
+
+#: Rows of `units` and `sums`: values at the begin and at the end of a step, and how much farther than these a
+#: value between them can be.
+BEGIN, END, BEND = 0, 1, 2
+
+#: Between its ends a function exceeds them by this share of its largest second derivative at most.
+OVERSHOOT = 1.0 / 8.0
+
+#: Factors of the second and third derivatives of a series.
+_SECOND = np.array([k * (k - 1.0) for k in range(WIDTH)])
+_THIRD = np.array([k * (k - 1.0) * (k - 2.0) for k in range(WIDTH)])
 
 #: Row of the scratch for the quantity watched.
 VALUE = 6
@@ -55,11 +67,12 @@ class Kept(NamedTuple):
     states: np.ndarray  # (room, 1 + 2 m + N + D) time, q, q', f, L
     senses: np.ndarray  # (room, N)
     counts: np.ndarray  # (2,) int: events and states there were; those beyond the room are not listed
-    ends: np.ndarray  # (Q,) the watched quantities at the end of the interval
-    sizes: np.ndarray  # (2 m + N + D,) bounds on what they are sums of, over the present step
-    units: np.ndarray  # (2 m + N + D,) the same at its end
+    columns: np.ndarray  # (2 m + N + D, Q) the weights again; filled up to vectors, as the next two
+    units: np.ndarray  # (3, 2 m + N + D) see BEGIN
+    sums: np.ndarray  # (3, Q) the same of the watched quantities; their ends are those of the interval, too
     forces: np.ndarray  # (N,) forces in the contacts there
     clock: np.ndarray  # (1,) time at the beginning of the interval
+    first: np.ndarray  # (1,) when the first slide begins; NaN: none
 
 
 @entry
@@ -73,12 +86,13 @@ def make_kept(problem, weights, rounding, record, room):
     watched = weights.shape[0]
     peaks = np.zeros((4, watched))
     peaks[LOW], peaks[HIGH] = np.inf, -np.inf
+    by_unit, sums = np.zeros((columns - 1, padded(watched))), np.full((3, padded(watched)), np.nan)
+    by_unit[:, :watched] = weights.T
     return Kept(
         weights, rounding, peaks, np.zeros((2, watched)), record, np.zeros(2), np.zeros((2, contacts)),
         np.zeros((3, contacts)), np.zeros((room[0], 3)), np.zeros((room[1], columns)),
         np.zeros((room[1], contacts), np.int8), np.zeros(2, np.int64),
-        np.full(watched, np.nan), np.zeros(columns - 1), np.zeros(columns - 1), np.zeros(contacts),
-        np.zeros(1),
+        by_unit, np.zeros((3, columns - 1)), sums, np.zeros(contacts), np.zeros(1), np.full(1, np.nan),
     )  # fmt: skip
 
 
@@ -119,47 +133,90 @@ def fill_watched(problem, row, motion, kept, i):
                 scratch[VALUE, k] += share * series[modes + d, k]
 
 
-@inner_kernel
-def _bound(series, at, terms):
-    """Bound on a series of this number of terms over its step."""
-    sum_ = 0.0
-    for k in range(terms):
-        sum_ += abs(series[at, k])
-    return sum_
+@kernel
+def begin_step(problem, row, motion, kept):
+    """Keep what the watched quantities are sums of at the begin of the present step."""
+    contacts, modes = problem.chi.shape
+    units = kept.units[BEGIN]
+    for m in range(modes):
+        units[m], units[modes + m] = motion.state[Q, m], motion.state[P, m] / row.numbers[H]
+    for j in range(contacts):
+        units[2 * modes + j] = motion.series[force_row(problem, j), 0]
+    for d in range(problem.push.shape[1]):
+        units[2 * modes + contacts + d] = motion.series[modes + d, 0]
 
 
 @kernel
-def _fill_units(problem, row, motion, end, kept):
-    """Fill what the watched quantities are sums of: bounds over the present step, values at its end."""
+def _bend(series, at):
+    """How much farther than its ends a series can be in its step."""
+    sum_ = filled(0.0)
+    for k in range(0, WIDTH, LANES):
+        sum_ = sum_ + magnitude(load(series, at * WIDTH + k)) * load(_SECOND, k)
+    return OVERSHOOT * total(sum_)
+
+
+@kernel
+def _bend_modes(problem, row, motion, share, kept):
+    """Fill the bounds of the modes and their velocities over a share of the step."""
+    modes = problem.squares.size
+    bends, width = kept.units[BEND], row.chi.shape[1]
+    for first in range(0, width, LANES):
+        place, rate = filled(0.0), filled(0.0)
+        for k in range(2, LONG):
+            size = magnitude(load(motion.moves, k * width + first))
+            place, rate = place + size * _SECOND[k], rate + size * _THIRD[k]
+        store(place * (OVERSHOOT * share), motion.scratch, VALUE * WIDTH)
+        store(rate * (OVERSHOOT * share / row.numbers[H]), motion.scratch, VALUE * WIDTH + LANES)
+        for m in range(first, min(first + LANES, modes)):
+            bends[m] = motion.scratch[VALUE, m - first]
+            bends[modes + m] = motion.scratch[VALUE, LANES + m - first]
+
+
+@kernel
+def _end_step(problem, row, motion, end, kept):
+    """Keep what the watched quantities are sums of at the end of a step, where the state is, and between."""
     contacts, modes = problem.chi.shape
-    series, sizes, units, h = motion.series, kept.sizes, kept.units, row.numbers[H]
+    series, share = motion.series, end * end
+    units, bends = kept.units[END], kept.units[BEND]
+    _bend_modes(problem, row, motion, share, kept)
     for m in range(modes):
-        sizes[m], units[m] = _bound(series, m, LONG), value_at(series, m, end)
-        rate = 0.0
-        for k in range(1, TERMS):
-            rate += k * abs(series[m, k])
-        sizes[modes + m], units[modes + m] = rate / h, slope_at(series, m, end) / h
-    for j in range(contacts):
-        source = force_row(problem, j)
-        sizes[2 * modes + j], units[2 * modes + j] = (
-            _bound(series, source, TERMS),
-            value_at(series, source, end),
-        )
-    for d in range(problem.push.shape[1]):
-        at = 2 * modes + contacts + d
-        sizes[at] = _bound(series, modes + d, row.intervals[LOAD_TERMS])
-        units[at] = value_at(series, modes + d, end)
+        units[m], units[modes + m] = motion.state[Q, m], motion.state[P, m] / row.numbers[H]
+    for i in range(contacts + problem.push.shape[1]):
+        at, source = 2 * modes + i, force_row(problem, i) if i < contacts else modes + i - contacts
+        units[at], bends[at] = value_at(series, source, end), share * _bend(series, source)
+
+
+@kernel
+def _add_up(kept):
+    """Fill the sums of the units, and of the moduli of their bounds."""
+    width = kept.sums.shape[1]
+    for r in range(0, width, LANES):
+        begin, end, bend = filled(0.0), filled(0.0), filled(0.0)
+        for q in range(kept.units.shape[1]):
+            weight = load(kept.columns, q * width + r)
+            begin = begin + weight * kept.units[BEGIN, q]
+            end = end + weight * kept.units[END, q]
+            bend = bend + magnitude(weight) * kept.units[BEND, q]
+        store(begin, kept.sums, BEGIN * width + r)
+        store(end, kept.sums, END * width + r)
+        store(bend, kept.sums, BEND * width + r)
 
 
 @inner_kernel
-def _can_exceed(kept, i):
-    """Whether quantity i can exceed its peaks so far in the present step; its value at the end is kept."""
-    bound, value = 0.0, 0.0
-    for q in range(kept.units.size):
-        bound += abs(kept.weights[i, q]) * kept.sizes[q]
-        value += kept.weights[i, q] * kept.units[q]
-    kept.ends[i] = value
-    return not (bound <= min(kept.peaks[HIGH, i], -kept.peaks[LOW, i]) + kept.rounding[i])
+def stays_within(kept, i, begin, end, bend):
+    """Whether quantity i does not exceed its peaks so far, but by rounding error, between two values."""
+    low, high = kept.peaks[LOW, i] - kept.rounding[i], kept.peaks[HIGH, i] + kept.rounding[i]
+    return low <= min(begin, end) - bend and max(begin, end) + bend <= high
+
+
+@inner_kernel
+def keep_end(row, kept, i, value):
+    """Include a value of quantity i at the end of an interval in which it is monotone."""
+    time = kept.clock[0] + row.numbers[H]
+    if value < kept.peaks[LOW, i]:
+        kept.peaks[LOW, i], kept.times[LOW, i] = value, time
+    if value > kept.peaks[HIGH, i]:
+        kept.peaks[HIGH, i], kept.times[HIGH, i] = value, time
 
 
 @kernel
@@ -168,16 +225,16 @@ def _keep_peaks(problem, row, motion, begin, end, kept):
 
     Parameters
     ----------
-    problem, row, motion, kept : see `motion.follow_record`
+    problem, row, motion, kept : see `motion.follow_record`; the state is that at the end
     begin, end : where the step begins in the interval, and its end in x after it
     """
-    _fill_units(problem, row, motion, end, kept)
+    _end_step(problem, row, motion, end, kept)
+    _add_up(kept)
     for i in range(kept.weights.shape[0]):
-        if not _can_exceed(kept, i):
+        if stays_within(kept, i, kept.sums[BEGIN, i], kept.sums[END, i], kept.sums[BEND, i]):
             continue
         fill_watched(problem, row, motion, kept, i)
         kept.peaks[LOW_AT, i] = kept.peaks[HIGH_AT, i] = -1.0
-        kept.ends[i] = value_at(motion.scratch, VALUE, end)
         keep_range(motion.scratch, VALUE, end, row.numbers[SIZE], kept.peaks, i, motion.scratch)
         for side in range(2):
             at = kept.peaks[LOW_AT + side, i]
@@ -245,7 +302,7 @@ def _keep_works(problem, row, motion, end, kept):
 
 @kernel
 def keep_step(problem, row, motion, begin, end, kept):
-    """Include the present step, from `begin` in the interval, up to `end` in x after it."""
+    """Include the present step, from `begin` in the interval, to `end` in x after it, where the state is."""
     _keep_peaks(problem, row, motion, begin, end, kept)
     _keep_works(problem, row, motion, end, kept)
 
@@ -296,9 +353,12 @@ def list_changes(row, motion, before, begin, kept):
         kind = STOP if new == 0 else (START if old == 0 else TURN)
         kept.changes[kind, j] += 1.0
         kept.slides[PRESENT, j] = 0.0
+        time = kept.clock[0] + begin * row.numbers[H]
+        if kind == START and not (kept.first[0] <= time):
+            kept.first[0] = time
         k = kept.counts[0]
         kept.counts[0] = k + 1
         if k < kept.events.shape[0]:
-            kept.events[k, TIME] = kept.clock[0] + begin * row.numbers[H]
+            kept.events[k, TIME] = time
             kept.events[k, CONTACT] = j
             kept.events[k, KIND] = kind

@@ -34,7 +34,8 @@ from ..general.record import clear_record
 from ..general.row import make_motion, make_row, set_channels, set_interval, shift_piece
 from ..general.series import advance, expand, factor_held
 from .asleep import is_asleep
-from .kept import keep_ends, keep_present, keep_step, list_changes, store_state
+from .held import Places, keep_places, make_places, note_places
+from .kept import begin_step, keep_ends, keep_present, keep_step, list_changes, store_state
 from .tables import Tables, has_tables, make_tables, pass_by_tables, set_tables
 
 #: What became of a motion.
@@ -74,6 +75,7 @@ class Memory(NamedTuple):
     tables: Tables
     box: np.ndarray  # (BOX_ROWS, N) scratch of `settle`
     counts: np.ndarray  # (COUNT_ROWS, N) counters
+    places: Places
 
 
 class Course(NamedTuple):
@@ -92,7 +94,7 @@ def make_memory(problem, watched, terms, lengths):
     contacts = problem.spring.size
     return Memory(
         make_row(problem), make_motion(problem), tables, np.zeros((BOX_ROWS, contacts)),
-        np.zeros((COUNT_ROWS, contacts)),
+        np.zeros((COUNT_ROWS, contacts)), make_places(problem),
     )  # fmt: skip
 
 
@@ -178,9 +180,11 @@ def _cross(problem, friction, memory, kept, jumped, listed):
         event = _next_event(problem, friction, motion, rest)
         step = min(event[0], rest)
         if step > 0.0:
-            keep_step(problem, row, motion, x, step, kept)
+            begin_step(problem, row, motion, kept)
             count_time(motion, counts, step * h)
             advance(problem, row, step, motion)
+            keep_places(problem, row, motion, x + step, kept.clock[0] + (x + step) * h, memory.places)
+            keep_step(problem, row, motion, x, step, kept)
             for j in range(motion.fresh.size):
                 motion.fresh[j] = 0
         if event[1] < 0:
@@ -195,6 +199,7 @@ def _cross(problem, friction, memory, kept, jumped, listed):
             return UNDETERMINED
         set_channels(problem, row, x * h, -1, motion)
         stop_exactly(problem, row, motion)  # the rounding error of what `settle` took away
+        note_places(problem, row, motion, before, x, kept.clock[0] + x * h, memory.places)
         list_changes(row, motion, before, x, kept)
     return TOO_MANY_EVENTS
 
@@ -238,6 +243,7 @@ def _jump(problem, friction, memory, kept):
         before[j] = motion.sense[j]
     if not _settle(problem, friction, memory):
         return False
+    note_places(problem, memory.row, motion, before, 0.0, kept.clock[0], memory.places)
     list_changes(memory.row, motion, before, 0.0, kept)
     return True
 
@@ -299,7 +305,12 @@ def _begin(problem, friction, memory, course, start, senses):
         motion.sense[j] = _sense_at_start(problem, row, motion, j) if by_law else senses[j]
     if not prepare(problem, row, friction, motion):
         return False
-    return senses[0] != BY_LAW or _settle(problem, friction, memory)
+    if senses[0] == BY_LAW and not _settle(problem, friction, memory):
+        return False
+    before = motion.scratch[_SENSE]
+    before[:] = 1.0
+    note_places(problem, row, motion, before, 0.0, course.times[0], memory.places)
+    return True
 
 
 @kernel
@@ -337,6 +348,7 @@ def _follow_interval(problem, friction, memory, course, kept, k, jump, listed):
         by_tables = not jumped and tables.known.size > 0
         row, motion, counts = memory.row, memory.motion, memory.counts
         if by_tables and pass_by_tables(problem, row, friction, motion, counts, kept, tables):
+            keep_places(problem, row, motion, 1.0, kept.clock[0] + row.numbers[H], memory.places)
             continue
         code = _cross(problem, friction, memory, kept, jumped, listed)
         if code != RESOLVED:
@@ -421,6 +433,9 @@ def follow_record(problem, friction, memory, course, start, senses, kept, bed, l
     clear_record(kept.record)
     if not _begin(problem, friction, memory, course, start, senses):
         return UNDETERMINED, 0, -1
+    for j in range(motion.sense.size):
+        if motion.sense[j] != 0:
+            kept.first[0] = course.times[0]
     if limits[EVERY] > 0:
         expand(problem, row, friction, 0.0, 0, motion, True)
         keep_present(problem, row, motion, 0.0, 0.0, kept)

@@ -7,14 +7,15 @@ slide, and the terms of the load.  For every set of held contacts the part of ea
 - the control points of the cubic that bounds the velocity or force watched in each contact, up to a share of
   its fourth derivative (see `crossings`),
 - the quantities whose peaks are kept, at the end; between the ends they exceed these by an eighth of their
-  second derivative at most,
+  second derivative at most, and not at all where their slope keeps its sign, by its ends and an eighth of the
+  third derivative,
 - integrals of the displacements that the load pushes, for its work, and of the forces of held contacts on
   walls that move, for theirs.
 
 Belts change nothing but the velocities watched in contacts that slide, by a constant.
 
-An interval in which nothing watched can reach its limit, and no quantity its peak so far, is passed by sums
-of these parts.  Others are followed by their series.
+An interval in which nothing watched can reach its limit, and no quantity its peak so far inside, is passed by
+sums of these parts.  Others are followed by their series.
 """
 
 import math
@@ -26,7 +27,7 @@ from ..compiler import entry, inner_kernel, kernel
 from ..compiler.packed import packed
 from ..compiler.vectors import LANES, filled, load, store
 from ..general.counts import STUCK
-from ..general.crossings import value_at
+from ..general.crossings import slope_at, value_at
 from ..general.glide import begin_with
 from ..general.laws.contact import has_tables as has_tables_of
 from ..general.laws.kinds import has_force, state_size
@@ -43,15 +44,29 @@ from ..general.problem import (
     padded,
     varies,
 )  # fmt: skip
-from ..general.record import HIGH, LOW, OF_FRICTION, OF_WALL
+from ..general.record import OF_FRICTION, OF_WALL
 from ..general.series import Friction, expand
-from .kept import LARGEST, OF_BASE, OF_LOAD, PRESENT, VALUE, fill_pushed, fill_watched
+from .kept import (
+    BEGIN,
+    BEND,
+    END,
+    LARGEST,
+    OF_BASE,
+    OF_LOAD,
+    OVERSHOOT,
+    PRESENT,
+    VALUE,
+    fill_pushed,
+    fill_watched,
+    keep_end,
+    stays_within,
+)
 
 #: Sets of held contacts whose tables are kept, and numbers in all tables, at most.
 _MOST_SETS, _MOST_NUMBERS = 64, 1 << 22
 
-#: Error of a cubic over the interval by its fourth derivative, and of the larger end by the second.
-_HERMITE, _OVERSHOOT = 1.0 / 384.0, 1.0 / 8.0
+#: Error of a cubic over the interval by its fourth derivative.
+_HERMITE = 1.0 / 384.0
 
 
 class Tables(NamedTuple):
@@ -62,6 +77,7 @@ class Tables(NamedTuple):
 
     parts: np.ndarray  # (I S U, B)
     bounds: np.ndarray  # (I S U, G)
+    slopes: np.ndarray  # (I S U, 3, Q) of the quantities: at the begin and the end, and how far beyond these
     known: np.ndarray  # (I S,) int: which set is there, plus 1; 0: none
     lengths: np.ndarray  # (I,) lengths of intervals; 0: none yet
     place: np.ndarray  # (1,) int: number of the present length
@@ -105,9 +121,11 @@ def make_tables(problem, watched, terms, lengths):
     units, rows = _sizes(problem, watched, terms)
     width, bounds = padded(rows), padded(contacts + watched)
     sets = min(1 << min(contacts, 6), _MOST_SETS)
-    sets = max(1, min(sets, _MOST_NUMBERS // (max(1, lengths) * units * (width + bounds)))) * lengths
+    numbers = units * (width + bounds + 3 * watched)
+    sets = max(1, min(sets, _MOST_NUMBERS // (max(1, lengths) * numbers))) * lengths
     return Tables(
-        np.zeros((sets * units, width)), np.zeros((sets * units, bounds)), np.zeros(sets, np.int64),
+        np.zeros((sets * units, width)), np.zeros((sets * units, bounds)),
+        np.zeros((sets * units, 3, watched)), np.zeros(sets, np.int64),
         np.zeros(lengths), np.zeros(1, np.int64),
         np.zeros(units), np.zeros(width), np.zeros(bounds), np.zeros(contacts),
         np.zeros((3, padded(max(modes, contacts)))),
@@ -179,7 +197,10 @@ def _fill_unit(problem, row, motion, kept, tables, at):
     for i in range(kept.weights.shape[0]):
         fill_watched(problem, row, motion, kept, i)
         parts[at, place + i] = value_at(motion.scratch, VALUE, 1.0)
-        bounds[at, contacts + i] = _OVERSHOOT * _weighted(motion.scratch, VALUE, 2)
+        bounds[at, contacts + i] = OVERSHOOT * _weighted(motion.scratch, VALUE, 2)
+        tables.slopes[at, BEGIN, i] = motion.scratch[VALUE, 1]
+        tables.slopes[at, END, i] = slope_at(motion.scratch, VALUE, 1.0)
+        tables.slopes[at, BEND, i] = OVERSHOOT * _weighted(motion.scratch, VALUE, 3)
     place += kept.weights.shape[0]
     terms = row.intervals[LOAD_TERMS]
     for d in range(channels):
@@ -306,6 +327,18 @@ def _stays(friction, motion, tables, first, j, belt):
     return low > -limit and high < limit
 
 
+@inner_kernel
+def _is_monotone(tables, slot, i):
+    """Whether the slope of quantity i keeps its sign over the interval."""
+    begin, end, bend = 0.0, 0.0, 0.0
+    for q in range(tables.units.size):
+        unit, at = tables.units[q], slot * tables.units.size + q
+        begin += unit * tables.slopes[at, BEGIN, i]
+        end += unit * tables.slopes[at, END, i]
+        bend += abs(unit) * tables.slopes[at, BEND, i]
+    return min(begin, end) > bend or max(begin, end) < -bend
+
+
 @kernel
 def pass_by_tables(problem, row, friction, motion, counts, kept, tables):
     """Move the motion to the end of an interval, if nothing happens there that must be looked into.
@@ -333,13 +366,12 @@ def pass_by_tables(problem, row, friction, motion, counts, kept, tables):
             return False
     first = size + 4 * contacts
     for i in range(kept.weights.shape[0]):
-        reach, end = tables.most[contacts + i], tables.sums[first + i]
         # the value at the beginning was included by the interval before, or is that of the start or a jump
-        begin, low, high = kept.ends[i], kept.peaks[LOW, i], kept.peaks[HIGH, i]
-        if not (low - kept.rounding[i] <= min(begin, end) - reach):
-            return False
-        if not (max(begin, end) + reach <= high + kept.rounding[i]):
-            return False
+        begin, end = kept.sums[END, i], tables.sums[first + i]
+        if not stays_within(kept, i, begin, end, tables.most[contacts + i]):
+            if begin != begin or not _is_monotone(tables, slot, i):
+                return False
+            keep_end(row, kept, i, end)
     _take(problem, row, friction, motion, counts, kept, tables)
     return True
 
@@ -438,4 +470,4 @@ def _take(problem, row, friction, motion, counts, kept, tables):
             motion.state[F, j] = units[2 * modes + j] + sums[2 * modes + j]
             kept.forces[j] = motion.state[F, j]
     for i in range(kept.weights.shape[0]):
-        kept.ends[i] = sums[size + 4 * contacts + i]
+        kept.sums[END, i] = sums[size + 4 * contacts + i]

@@ -18,7 +18,7 @@ SLOWER, FASTER = 2, 3
 
 #: Values of `Motion.fresh` after a break point, beyond numbers of zeros: the speed has exceeded it, or fallen
 #: below it.
-ROSE, FELL = 5, 6
+ROSE, FELL = 64, 65
 
 
 @inner_kernel

@@ -236,7 +236,10 @@ def _takes_cell(sub: argparse.ArgumentParser) -> None:
 
 
 def _takes_choices(sub: argparse.ArgumentParser) -> None:
-    text = "select a value on one of the further axes of a map, e.g. --at damping_ratios=0.01; repeatable"
+    text = (
+        "select a value on one of the further axes of a map, e.g. --at damping_ratios=0.01, or one of "
+        "several motions in time, e.g. --at record=2; repeatable"
+    )
     sub.add_argument("--at", metavar="NAME=VALUE", action="append", default=[], help=text)
 
 
@@ -254,7 +257,10 @@ def _takes_against(sub: argparse.ArgumentParser) -> None:
 
 def _takes_picture(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("file", metavar="FILE", type=Path, help="file to draw: FILE.nc, or a store FILE.zarr")
-    text = ".png, .pdf or .svg; .gif or .mp4: a response, moving (default: FILE.png in the current folder)"
+    text = (
+        ".png, .pdf or .svg; .gif or .mp4: a response or a motion, moving (default: FILE.png in the current "
+        "folder)"
+    )
     _takes_output(sub, "PICTURE", text)
     text = (
         "quantity to draw; response curves: amplitude (with the phase), first_harmonic, contact, harmonics, "
@@ -444,7 +450,9 @@ def _takes_beginnings(command: Callable[[str, str, str], argparse.ArgumentParser
     which.add_argument("--contact", choices=CONTACTS, metavar="CONTACT", action=_Once, help=text)
     for name, words in _TEMPLATES.items():
         which.add_argument(f"--{name}", dest="template", action="store_const", const=name, help=words)
-    text = f"configuration for measured data, with a synthetic data file: {', '.join(RIGS)}"
+    text = (
+        f"configuration for measured data, with a synthetic data file KIND.csv beside it: {', '.join(RIGS)}"
+    )
     which.add_argument("--rig", choices=RIGS, metavar="KIND", action=_Once, help=text)
     numbers = sub.add_mutually_exclusive_group()
     text = "numbers in kilograms, newtons and hertz (default, but with --full)"

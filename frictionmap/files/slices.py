@@ -17,6 +17,9 @@ from .config import Config, config_of
 #: A number that was typed is that of an axis if they differ by no more than this share.
 _SAME = 1e-9
 
+#: Axes of every map, of motions and of spectra, in the order of messages.
+_OWN_AXES = ("mu", "r", "beta", "record", "scale", "period")
+
 #: Values of an axis that a message lists.
 _LISTED = 8
 
@@ -70,7 +73,7 @@ def choose(
     """
     further = further_axes(ds)
     valid = [*further, *(str(n) for n in ds.coords if n not in further and _further(ds, str(n), further))]
-    valid += [name for name in ("mu", "r", "beta") if ds.sizes.get(name, 0) > 0]
+    valid += [name for name in _OWN_AXES if ds.sizes.get(name, 0) > 0]
     places: dict[str, np.ndarray] = {}
     for name, value in choices.items():
         if name not in valid:

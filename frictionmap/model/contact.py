@@ -21,6 +21,11 @@ WALLS = ("wall_velocity", "wall_speed")
 MOST_CONTACTS = 8
 
 
+def without_wall(kind: str, name: str, given: object) -> InputError:
+    """The error about a moving wall of a contact that has none."""
+    return InputError(name, f"must be 0 for {kind}, which has no wall of its own; got {given}")
+
+
 @dataclass(frozen=True, repr=False)
 class Contact(Shown):
     """One friction contact.
@@ -101,10 +106,7 @@ class Contact(Shown):
         for name in WALLS:
             self._set(name, checks.number(getattr(self, name), name))
             if getattr(self, name) and self.kind != "fixed-wall":
-                raise InputError(
-                    name,
-                    f"must be 0 for {self.kind}, which has no wall of its own; got {getattr(self, name):g}",
-                )
+                raise without_wall(self.kind, name, f"{getattr(self, name):g}")
         if self.wall_velocity and self.wall_speed:
             raise InputError(
                 "cannot use", "wall_speed", "with wall_velocity: both are the motion of the wall; omit one"
@@ -122,7 +124,7 @@ class Contact(Shown):
         if self.normal_record is not None:
             self._check_normal_record()
         if self.normal_load is not None:
-            self._set("nu", scalar_harmonics(self.normal_load, "normal_load"))
+            self._set("nu", scalar_harmonics(self.normal_load, "normal_load", "the mean normal load"))
             self._check_normal_load()
 
     def _set(self, name: str, value: object) -> None:

@@ -166,8 +166,16 @@ def order(value: object, name: str) -> int:
     return checks.whole(value, name, least=1, most=MOST_HARMONICS)
 
 
-def phasor(entry: Mapping[str, Any], name: str) -> complex:
-    """Phasor of an entry with `amplitude` and `phase_deg`, or `re` and `im`."""
+def phasor(entry: Mapping[str, Any], name: str, over: str = "") -> complex:
+    """Phasor of an entry with `amplitude` and `phase_deg`, or `re` and `im`.
+
+    over : what it is a ratio to, for the message about a number with a unit
+    """
+    for part in ("amplitude", "re", "im"):
+        if over and isinstance(entry.get(part), str):
+            raise InputError(
+                f"{name}.{part}", f"must be a ratio to {over}, without a unit; got {entry[part]!r}"
+            )
     if "re" in entry or "im" in entry:
         return complex(*(checks.number(entry.get(part, 0.0), f"{name}.{part}") for part in ("re", "im")))
     amplitude = checks.number(entry.get("amplitude"), f"{name}.amplitude")
@@ -199,8 +207,11 @@ def check_entry(entry: object, name: str, valid: Sequence[str]) -> Mapping[str, 
     return entry
 
 
-def scalar_harmonics(given: object, name: str) -> dict[int, complex]:
-    """Harmonics of one quantity: a mapping {n: phasor}, or a list of { n, amplitude, phase_deg }."""
+def scalar_harmonics(given: object, name: str, over: str = "") -> dict[int, complex]:
+    """Harmonics of one quantity: a mapping {n: phasor}, or a list of { n, amplitude, phase_deg }.
+
+    over : see `phasor`
+    """
     found: dict[int, complex] = {}
     if isinstance(given, Mapping):
         for n, value in given.items():
@@ -211,7 +222,7 @@ def scalar_harmonics(given: object, name: str) -> dict[int, complex]:
         for k, one in enumerate(given):
             entry = check_entry(one, f"{name}[{k}]", ("n", *_PARTS))
             n = order(entry["n"], f"{name}[{k}].n")
-            found[n] = found.get(n, 0.0) + phasor(entry, f"{name}[{k}]")
+            found[n] = found.get(n, 0.0) + phasor(entry, f"{name}[{k}]", over)
     else:
         raise InputError(
             name,

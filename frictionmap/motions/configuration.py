@@ -242,9 +242,11 @@ def _values(given: Any, name: str, kind: str) -> Any:
     spacing = checks.choice(given.get("spacing", "linear"), f"{name}.spacing", ("linear", "log"))
     ends = [given["start"], given["stop"]]
     exact = quantities(ends, name, kind)
-    start, stop = (checks.number(float(end), name, least=0.0) for end in exact) if exact else (
-        checks.number(end, name, least=0.0) for end in ends
-    )  # fmt: skip
+    ends = ends if exact is None else [float(end) for end in exact]
+    least = {"above": 0.0} if kind == "time" else {"least": 0.0}
+    start, stop = (
+        checks.number(end, f"{name}.{key}", **least) for key, end in zip(valid[:2], ends, strict=True)
+    )
     num = checks.whole(given["num"], f"{name}.num", least=2)
     if spacing == "log" and start <= 0.0:
         raise InputError(f"{name}.start", f"must be > 0 with spacing log; got {start:g}")

@@ -79,10 +79,10 @@ def _friction(given: Any, records: tuple[Record, ...]) -> np.ndarray:
     """Friction force over the mass."""
     values = quantities(given, "friction", "acceleration")
     if (values is not None) != (records[0].unit is not None):
-        hint = 'with a unit, as "0.05 g", because the records have one'
+        hint = 'have a unit, such as "0.05 g", because the records have one'
         if values is not None:
-            hint = "plain numbers, because the records have no unit"
-        raise InputError("friction", f"must be {hint}; got {checks.one_line(given)}")
+            hint = "be numbers without a unit, because the records have none"
+        raise InputError("friction", f"must {hint}; got {checks.one_line(given)}")
     return checks.axis(given if values is None else [float(one) for one in values], "friction", least=0.0)
 
 
@@ -90,12 +90,12 @@ def _periods(given: Any) -> np.ndarray:
     """Periods > 0; infinite without a spring."""
     values = np.atleast_1d(checks.array(given, "period"))
     if values.dtype.kind in "iuf" and values.ndim == 1 and values.size and np.isposinf(values[-1]):
-        finite = checks.axis(values[:-1], "period", least=0.0) if values.size > 1 else np.empty(0)
+        finite = checks.axis(values[:-1], "period", least=-np.inf) if values.size > 1 else np.empty(0)
         found = np.append(finite, np.inf)
     else:
-        found = checks.axis(values, "period", least=0.0)
-    if found[0] == 0.0:
-        raise InputError("period", "must be > 0; got 0")
+        found = checks.axis(values, "period", least=-np.inf)
+    if found[0] <= 0.0:
+        raise InputError("period", f"must be > 0; got {found[0]:g}")
     return found
 
 

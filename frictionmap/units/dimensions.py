@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from .. import checks
 from ..errors import InputError
+from ..model.contact import CONTACTS, WALLS, without_wall
 from ..model.general import ACCELERATION
 from ..model.system import System
 from .axes import grid_ratios, has_units, needs
@@ -156,6 +157,7 @@ def in_ratios(
         table = {"base_control": ACCELERATION, **table}
     if not any(has_units(value) for value in table.values()):
         return dict(table)
+    _refuse_walls(table, name)
     plain = _with_speeds(_plain_matrix_numbers(table, units, name))
     given: list[Wanted] = []
 
@@ -169,6 +171,18 @@ def in_ratios(
     scales = NO_SCALES if units is None else reference_scales(units, _Model(plain))
     scales.require([*wanted, *given])
     return dict(_changed(plain, "", name, lambda value, place: _ratio(value, place, scales)))
+
+
+def _refuse_walls(table: Mapping[str, Any], name: str) -> None:
+    """Refuse a wall that moves with a unit, of contacts that have none, before its unit is converted."""
+    contacts = table.get("contacts")
+    several = contacts if isinstance(contacts, (list, tuple)) else ()
+    named = [(f"{name}.contacts[{k}].", one, one.get("kind")) for k, one in enumerate(several, 1)
+             if isinstance(one, Mapping)]  # fmt: skip
+    for place, one, kind in ((f"{name}.", table, table.get("contact")), *named):
+        for wall in WALLS:
+            if has_units(one.get(wall)) and kind in CONTACTS and kind != "fixed-wall":
+                raise without_wall(kind, f"{place}{wall}".lstrip("."), checks.one_line(one[wall]))
 
 
 def _with_speeds(table: Mapping[str, Any]) -> dict[str, Any]:

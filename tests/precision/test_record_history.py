@@ -1,6 +1,7 @@
 """Records of any shape: motion and derivatives against other integrations, fits of known truth."""
 
 import json
+import re
 import tomllib
 
 import numpy as np
@@ -205,6 +206,25 @@ def test_gain_and_stiffness_are_refused_together():
     free = ["f_n", "zeta", "x_F", "offset_x", "stiffness", "gain"]
     with pytest.raises(InputError, match="gain together with stiffness"):
         fm.identify.history(time, x, force=base, free=free, known={"mu": 1.0})
+
+
+def test_static_friction_that_is_not_fitted_is_suggested():
+    """And only that: noise twice as large as it is stated leaves the record as little explained."""
+    time = np.arange(600) * STEP
+    base = base_motion(time)
+    free = ["f_n", "zeta", "x_F", "offset_x"]
+    options = {"base": base, "damping_reference": "base", "known": {"mu": 1.0}, "free": free}
+    x = marched(time, base, 3.1, 0.01, 0.8, 1.25, (0.5, 12.0))
+    noise = 0.02 * np.random.default_rng(1).normal(size=600)
+    found = fm.identify.history(time, x + noise, sigma_x=0.02, sigma_drive=0.0, **options)
+    said = re.search(
+        r"static friction explains the record better, mu (.*) instead of 1: name mu", found.warnings
+    )
+    assert abs(float(said[1]) - 1.25) < 0.03
+    x = marched(time, base, 3.1, 0.01, 0.8, 1.0, (0.5, 12.0))
+    found = fm.identify.history(time, x + noise, sigma_x=0.01, sigma_drive=0.0, **options)
+    assert "does not explain" in found.warnings
+    assert "static friction" not in found.warnings
 
 
 VISIBLE = ("random", "runup", "quake", "hammer", "static", "elastic", "delay", "noisybase")

@@ -142,11 +142,32 @@ def test_plot_writes_the_moving_picture_of_a_history(shaken, tmp_path, monkeypat
         assert (picture.format, picture.n_frames) == ("GIF", 4)
 
 
+def test_one_of_several_motions_is_chosen_with_at(tmp_path, monkeypatch, capsys):
+    """The remedy of the message; the motions that end sooner are padded with NaN."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("frictionmap.plot.animate", functools.partial(fm.animate, seconds=0.2, fps=20.0))
+    pulse = fm.Record([0.0, 1.0, 0.0], dt=1.0, quantity="force")
+    twice = fm.history(fm.System(damping_ratios=0.1), [pulse, pulse], beta=[0.05, 0.4], scale=[0.5, 1.0])
+    assert np.isnan(twice.x).any()
+    twice.to_netcdf("motions.nc")
+    assert main(["plot", "motions.nc", "-o", "motion.gif"]) == 2
+    said = capsys.readouterr().err
+    assert (
+        "--at record=1 --at scale=0.5 --at beta=0.05 or ds.sel(record=[1], scale=[0.5], beta=[0.05])" in said
+    )
+    options = ["--at", "record=1", "--at", "scale=0.5", "--at", "beta=0.05"]
+    assert main(["plot", "motions.nc", "-o", "motion.gif", *options]) == 0
+    assert main(["plot", "motions.nc", "-o", "motion.png", *options]) == 0
+    assert main(["info", "motions.nc", *options]) == 0
+    assert "stops" in capsys.readouterr().out
+
+
 def test_histories_without_one_motion_are_refused():
     several = fm.history(fm.System(), fm.Record([0.0, 1.0, 0.0], dt=1.0, quantity="force"), beta=[0.2, 0.3])
-    with pytest.raises(fm.InputError, match=r"choose one, such as ds\.isel\(beta=\[0\]\)$"):
+    remedy = r"choose one, such as --at beta=0\.2 or ds\.sel\(beta=\[0\.2\]\)$"
+    with pytest.raises(fm.InputError, match=remedy):
         fm.animate(several)
-    fm.animate(several.isel(beta=[0]), seconds=0.1)._draw_was_started = True  # the remedy works
+    fm.animate(several.sel(beta=[0.2]), seconds=0.1)._draw_was_started = True  # the remedy works
     pulse = fm.Record([0.0, 1.0, 0.0], dt=1.0, quantity="force")
     with pytest.raises(fm.InputError, match='samples="all"'):
         fm.animate(fm.history(fm.System(), pulse, beta=[0.2], samples="none"))

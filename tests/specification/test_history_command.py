@@ -125,6 +125,46 @@ def test_spectra_are_of_one_mass(tmp_path, capsys):
     assert "spectra of 2 masses" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ("spectrum.period=-1 s", "spectrum.period must be > 0; got -1"),
+        ("spectrum.period=[0.0, 1.0]", "spectrum.period must be > 0; got 0"),
+        (
+            'spectrum.period={ start = "0 s", stop = "2 s", num = 3 }',
+            "spectrum.period.start must be > 0; got 0",
+        ),
+        (
+            "spectrum.friction=0.1",
+            'spectrum.friction must have a unit, such as "0.05 g", because the records have one; got 0.1',
+        ),
+    ],
+)
+def test_mistakes_in_spectra_are_refused_with_what_is_valid(capsys, change, message):
+    assert main(["spectrum", str(MOTIONS / "spectra.toml"), *FEW, "--set", change]) == 2
+    assert message in capsys.readouterr().err
+
+
+WALLS = {
+    "wall_speed = '0.1 m/s'\n":
+        "system.wall_speed must be 0 for joined-base-wall, which has no wall of its own; got '0.1 m/s'",
+    "[[system.contacts]]\nkind = 'between-masses'\nmasses = [1, 2]\nwall_velocity = '0.1 m/s'\n":
+        "system.contacts[1].wall_velocity must be 0 for between-masses, which has no wall",
+    "normal_load = [{ n = 1, amplitude = '0.5 N' }]\n":
+        "system.normal_load[0].amplitude must be a ratio to the mean normal load, without a unit; got '0.5",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("given", WALLS)
+def test_the_first_remedy_is_the_last(tmp_path, capsys, given):
+    """A wall that a contact does not have is refused before a reference value is asked for."""
+    record = "[record]\npulse = { kind = 'half-sine', amplitude = 1.0, duration = 3.0 }\n"
+    contact = "contact = 'joined-base-wall'\n" if given.startswith("wall") else ""
+    (tmp_path / "wall.toml").write_text(f"[system]\n{contact}{given}{record}")
+    assert main(["history", "wall.toml"]) == 2
+    assert WALLS[given] in capsys.readouterr().err
+
+
 def test_what_a_motion_is_under_is_refused_by_steady_states():
     moving = fm.Record([0.0, 0.1, 0.0], 1.0, quantity="force")
     system = fm.System(contacts=[fm.Contact("fixed-wall", 1, normal_record=moving)])

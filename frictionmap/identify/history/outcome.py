@@ -31,6 +31,9 @@ _POSSIBLE = 10.0
 #: Longest step along the profile of mu, whose standard error is 0 or without bound where nothing sticks.
 _STEP_OF_MU = 0.1
 
+#: Values of mu from which one is looked for that explains a record better than the one that is held.
+_STATIC = (1.1, 1.3)
+
 #: Events that are starts from rest.
 _START = 2.0
 
@@ -68,9 +71,32 @@ def judged(fit: HistoryFit, shown: list[str], given_sigma: bool) -> Outcome:
     if np.isnan(fit.held[MU]) and np.isfinite(found.standard_error[MU]):
         found = _with_profile(fit, found, MU)
         words += interval_warnings("mu", 1.0, bool(found.lower[MU] > 1.0))
+    if not explained or found.inflation > 1.0:
+        words += _static_friction(fit, found)
     found, more = _covering(fit, found)
     code = _code(fit, found, bool(explained))
     return Outcome(fit, found, code, _condition(fit), words + more)
+
+
+def _static_friction(fit: HistoryFit, found: Errors) -> list[str]:
+    """Advise to fit mu that is held, where another one explains the record better.
+
+    The motion has no slope by mu at mu = 1, as it then starts without acceleration: only a descent shows it.
+    """
+    if fit.given.elastic or np.isnan(fit.held[MU]) or fit.course.stuck == 0.0:
+        return []
+    free = fit.problem.free.copy()
+    free[MU] = True
+    starts = np.repeat(fit.solution.values[np.newaxis], len(_STATIC), axis=0)
+    starts[:, MU] = _STATIC
+    ends = [minimise(fit.problem._replace(free=free), one) for one in starts]
+    best = min(ends, key=lambda one: one.sum)
+    if not fit.solution.sum - best.sum > FOUND**2 * found.variance:
+        return []
+    return [
+        f"static friction explains the record better, mu {best.values[MU]:.3g} instead of {fit.held[MU]:g}: "
+        "name mu in free and omit known.mu"
+    ]
 
 
 def _check_slides(fit: HistoryFit) -> None:

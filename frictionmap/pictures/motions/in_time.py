@@ -144,6 +144,33 @@ def _is_single(ds: xr.Dataset) -> bool:
     return all(ds.sizes[dim] == 1 for dim in CELL)
 
 
+def choice_of(ds: xr.Dataset, *dims: str) -> str:
+    """How to choose one of several values along axes: an option of the command, and the same in Python."""
+    several = {dim: ds[dim].values[0].item() for dim in dims if ds.sizes[dim] > 1}
+    options = " ".join(f"--at {dim}={value!r}" for dim, value in several.items())
+    chosen = ", ".join(f"{dim}=[{value!r}]" for dim, value in several.items())
+    return f"choose one, such as {options} or ds.sel({chosen})"
+
+
+def refuse_several(ds: xr.Dataset, *dims: str) -> None:
+    """Refuse a dataset with several values along an axis that a picture does not show.
+
+    Raises
+    ------
+    InputError
+        There are several; the message shows how to choose one.
+    """
+    for dim in dims:
+        if ds.sizes[dim] > 1:
+            raise InputError(f"ds must have one value of {dim}; got {ds.sizes[dim]}: {choice_of(ds, *dims)}")
+
+
+def _one_motion(ds: xr.Dataset) -> xr.Dataset:
+    """The only motion of a dataset; one of several that took longer is padded with NaN after its end."""
+    one = ds.squeeze(list(CELL))
+    return one.isel(time=np.isfinite(one["drive"].values))
+
+
 def single_motion(ds: xr.Dataset) -> xr.Dataset:
     """The only motion of a history, without the dimensions of several.
 
@@ -153,15 +180,15 @@ def single_motion(ds: xr.Dataset) -> xr.Dataset:
         There are several, or its samples are missing.
     """
     if not _is_single(ds):
-        several = ", ".join(f"{dim}=[0]" for dim in CELL if ds.sizes[dim] > 1)
-        raise InputError(f"cannot move several motions: one is drawn; choose one, such as ds.isel({several})")
+        raise InputError(f"cannot move several motions: one is drawn; {choice_of(ds, *CELL)}")
     if "time" not in ds.dims:
         raise InputError(
             'cannot move a motion without samples: the dataset has none; follow it with samples="all"'
         )
     check_holds(ds, ("x", "z", "friction", "direction", "drive"), "its motion")
-    check_range(ds, ("x", "z", "friction", "drive"))
-    return ds.squeeze(list(CELL))
+    one = _one_motion(ds)
+    check_range(one, ("x", "z", "friction", "drive"))
+    return one
 
 
 @with_options
@@ -196,8 +223,8 @@ def plot_history(
         check_holds(ds, ("x", "friction", "direction", "drive"), "its motion")
     elif ds.sizes["beta"] == 1:
         raise InputError(
-            "cannot draw several motions with one friction: their peaks have no axis; choose one, such as "
-            "ds.isel(record=[0]), or follow them with several values of beta"
+            "cannot draw several motions with one friction: their peaks have no axis; "
+            f"{choice_of(ds, *CELL)}, or follow them with several values of beta"
         )
     count = 3 if single else 1
     if ax is None:
@@ -205,7 +232,7 @@ def plot_history(
         axes = new_figure(*size).subplots(count, 1, sharex=True, squeeze=False).ravel()
     else:
         axes = given_axes(ax, count, "for a history")
-    one = ds.squeeze(list(CELL)) if single else ds
+    one = _one_motion(ds) if single else ds
     handles = _draw_traces(axes, one) if single else _draw_peaks(axes[0], ds)
     if ax is None:
         motions = 1 if single else ds.sizes["record"] * ds.sizes["scale"]
@@ -258,7 +285,7 @@ def plot_spectrum(
     """
     ds = to_draw(ds, "plot_spectrum", "spectrum")
     name = drawn_peak(ds)
-    ds = ds.isel({dim: [0] for dim in ("mu", "scale")})
+    refuse_several(ds, "mu", "scale")
     beta = ds["beta"].values
     chosen = np.unique(np.linspace(0, beta.size - 1, min(beta.size, _MOST_LINES)).round().astype(int))
     axes = one_panel(ax)

@@ -21,6 +21,7 @@ from .in_time import (
     drawn_peak,
     end_picture,
     one_panel,
+    refuse_several,
     unit_of,
     values_in_si,
     words_of,
@@ -64,11 +65,12 @@ def plot_incremental(
     """
     ds = to_draw(ds, "plot_incremental", "spectrum")
     name = drawn_peak(ds)
+    refuse_several(ds, "scale", "mu")
     positive = ds["beta"].values[ds["beta"].values > 0.0]
     if positive.size < 2:
         raise InputError(f"ds must have at least 2 values of beta above 0; got {positive.size}")
     chosen = float(positive[positive.size // 2]) if friction is None else friction
-    peaks = over_scale(ds.isel(mu=[0]), chosen, name).isel(mu=0).transpose("record", "period", "scale")
+    peaks = over_scale(ds, chosen, name).isel(mu=0).transpose("record", "period", "scale")
     axes = one_panel(ax)
     periods = ds["period"].values
     count = min(periods.size, _MOST_LINES)
@@ -115,9 +117,7 @@ def plot_energies(
     """
     ds = to_draw(ds, "plot_energies", "history")
     check_holds(ds, ("work_friction", "work_damping", "energy"), "its works")
-    for dim in ("scale", "mu"):
-        if ds.sizes[dim] > 1:
-            raise InputError(f"ds must have one value of {dim}; got {ds.sizes[dim]}: use ds.isel({dim}=[0])")
+    refuse_several(ds, "scale", "mu")
     if ds.sizes["beta"] == 1:
         raise InputError("ds must have several values of beta, over which energies are drawn; got one")
     joule = ""

@@ -69,7 +69,6 @@ if TYPE_CHECKING:
     from .model.system import System
     from .motions.dataset import history
     from .motions.record import Record
-    from .motions.spectra import spectrum
     from .motions.statistics import stationary
     from .plot import (
         animate,
@@ -94,6 +93,7 @@ if TYPE_CHECKING:
     from .steady.response import response
     from .steady.sweep import sweep
     from .stop_counts.dataset import borders
+    from .stores.spectrum import spectrum
     from .theory.continuous_motion import continuous_motion
     from .units.dimensions import system_in_units
     from .units.scales import Units
@@ -182,7 +182,7 @@ _HOME = {
     "ring": "model.sectors",
     "response": "steady.response",
     "shares": "probabilities",
-    "spectrum": "motions.spectra",
+    "spectrum": "stores.spectrum",
     "stationary": "motions.statistics",
     "sweep": "steady.sweep",
 }

@@ -1,7 +1,7 @@
 """Jobs on a pool of threads: kernels release the interpreter lock, so that they run side by side."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from itertools import count, islice
 
@@ -50,13 +50,12 @@ def run_counted(jobs: Sequence[Job], threads: int, progress: Progress | None, wa
     run_jobs(jobs, threads, done, watch)
 
 
-def run_jobs(jobs: Sequence[Job], threads: int, done: Callable, watch: Watch | None) -> None:
+def run_jobs(jobs: Iterable[Job], threads: int, done: Callable, watch: Watch | None) -> None:
     """Run jobs on a pool of threads; `done(index)` is called in this thread as each one ends.
 
-    This thread only waits, so that it receives an interrupt at once.
+    This thread makes a job when there is room for it, and else only waits, so that it receives an interrupt
+    at once.
     """
-    if not jobs:
-        return
     pool = _pool(threads)
     running: dict[Future, int] = {}
     waiting = iter(enumerate(jobs))

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from frictionmap import spectrum
 from frictionmap.motions.record import Record
-from frictionmap.motions.spectra import spectrum
 
 from ..report.record import pinned, save, spread, table, timed
 

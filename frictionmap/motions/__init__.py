@@ -23,7 +23,7 @@ bounds           how far motions with other friction, or under another record, c
 choice           `least_median`: the friction with the least median of a peak over records
 lanes            oscillators with friction under one record, eight at a time
 elastic_spectra  spectra of one mass whose contact has a spring
-spectra          `spectrum`: friction response spectra of one mass
+spectra          friction response spectra of one mass
 statistics       medians, quantiles, exceedance over records; means of stationary motions over time
 table            the table [record] of a configuration
 configuration    the tables [record], [history] and [spectrum] of a configuration

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,6 +12,7 @@ import xarray as xr
 from .. import checks
 from ..errors import InputError
 from ..files.config import checked_table, common_tables, names_of_tables, read_tree, unknown_key, within
+from ..jobs import Progress
 from ..model.system import System
 from ..units.quantities import quantities
 from ..units.scales import Units
@@ -19,10 +20,8 @@ from .bounds import interpolation_bounds
 from .dataset import history
 from .record import Record
 from .scaling import motion_scales
-from .spectra import VARIABLES, Asked, checked_spectra, spectrum
+from .spectra import VARIABLES, Asked, at_once, checked_spectra
 from .table import records_of
-
-T = TypeVar("T")
 
 #: Keys of [record] that say how motions are followed, not what the records are.
 _OF_MOTIONS = ("scale", "after")
@@ -185,11 +184,10 @@ def load_spectrum(path: str | Path, overrides: Sequence[str] = ()) -> Task:
     given |= {"scale": record["scale"]} if "scale" in record else {}
     given |= _system_values(tree, path, given)
     wanted = _names(given.pop("quantities", None))
-    ask = partial(_spectra, spectrum, records, given)
+    asked = partial(_spectra, records, given)
     count = len(records) * _count(*(given.get(name) for name in ("scale", "mu", "period", "friction")))
     return Task(
-        title, path.stem, text, (path, *files), count, partial(_chosen, ask, wanted),
-        partial(_spectra, checked_spectra, records, given), wanted,
+        title, path.stem, text, (path, *files), count, partial(_chosen, asked, wanted), asked, wanted,
     )  # fmt: skip
 
 
@@ -202,8 +200,11 @@ def _names(wanted: Sequence[str] | None) -> tuple[str, ...] | None:
     return tuple(dict.fromkeys((*wanted, "status")))
 
 
-def _chosen(ask: Callable[..., xr.Dataset], wanted: tuple[str, ...] | None, **options: Any) -> xr.Dataset:
-    ds = ask(**options)
+def _chosen(
+    asked: Callable[[], Asked], wanted: tuple[str, ...] | None, threads: int | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:  # fmt: skip
+    ds = at_once(asked(), threads, progress)
     return ds if wanted is None else ds[list(wanted)]
 
 
@@ -265,14 +266,12 @@ def _periods(given: Any) -> Any:
     return found
 
 
-def _spectra(
-    function: Callable[..., T], records: tuple[Record, ...], given: Mapping[str, Any], **options: Any
-) -> T:
-    """Ask a function about spectra; errors name keys of the tables."""
+def _spectra(records: tuple[Record, ...], given: Mapping[str, Any]) -> Asked:
+    """The oscillators that a configuration describes; errors name keys of the tables."""
     arguments = dict(given)
     period, friction = arguments.pop("period"), arguments.pop("friction")
     try:
-        return function(records, period, friction, **arguments, **options)
+        return checked_spectra(records, period, friction, **arguments)
     except InputError as error:
         where = error.where.partition("[")[0]
         raise (within("spectrum", error) if where in given else error) from None

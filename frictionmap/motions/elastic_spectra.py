@@ -1,6 +1,8 @@
 """Spectra of one mass whose contact has a spring: by the general engine, oscillator by oscillator."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -15,6 +17,9 @@ from .record import Record
 
 #: Powers of w that the values of a record are divided by, in time over 1/w and displacements as they are.
 _POWERS = {"force": 2, "acceleration": 2, "velocity": 1, "displacement": 0}
+
+#: Samples of records that are followed together, at most: each takes about 200 bytes.
+_TOGETHER = 10**6
 
 
 def _over_w(record: Record, w: float, size: float) -> Record:
@@ -66,9 +71,10 @@ def follow_elastic(
     """
     system = _system(grid, stiffness)
     found = np.zeros((len(Responses._fields), *grid.shape))
-    for k, period in enumerate(grid.period):
+    tasks = list(product(_groups(grid.records), enumerate(grid.period)))
+    for ended, (group, (k, period)) in enumerate(tasks, 1):
         w = 2.0 * np.pi / period
-        records = [_over_w(one, w, share) for one, share in zip(grid.records, size, strict=True)]
+        records = [_over_w(grid.records[i], w, size[i]) for i in group]
         ds = history(
             system, records, beta=grid.friction / w**2, scale=grid.scale, samples="none", beta_hold=False,
             threads=threads, watch=watch,
@@ -78,7 +84,18 @@ def follow_elastic(
             values = ds[own.get(name, name)]
             values = values.isel(dof=0) if "dof" in values.dims else values
             factor = {"acceleration_amplitude": w * w, "asleep_time": 1.0 / w}.get(name, 1.0)
-            found[i, :, :, :, k] = factor * values.values
+            found[i, group.start : group.stop, :, :, k] = factor * values.values
         if progress is not None:
-            progress(k + 1, grid.period.size)
+            progress(ended, len(tasks))
     return found
+
+
+def _groups(records: Sequence[Record]) -> Iterator[range]:
+    """Numbers of neighbouring records that together have few enough samples for memory."""
+    first, samples = 0, 0
+    for k, record in enumerate(records):
+        if k > first and samples + record.values.size > _TOGETHER:
+            yield range(first, k)
+            first, samples = k, 0
+        samples += record.values.size
+    yield range(first, len(records))

@@ -1,6 +1,6 @@
-"""`spectrum`: friction response spectra, the peaks of one mass with friction over its natural period."""
+"""Friction response spectra: the peaks of one mass with friction over its natural period."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from ..datasets.labels import REFERENCES
 from ..datasets.motion_labels import STATUSES
 from ..datasets.provenance import now
 from ..errors import InputError
-from ..jobs import Progress, Watch, run_counted
+from ..jobs import Job, Progress, Watch, run_jobs
 from ..units.quantities import quantities
 from ..units.table import UNITS
 from ..version import __version__
@@ -99,83 +99,6 @@ def _periods(given: Any) -> np.ndarray:
     return found
 
 
-def spectrum(
-    records: Record | Sequence[Record],
-    period: ArrayLike,
-    friction: Any,
-    *,
-    mu: ArrayLike = 1.0,
-    damping: float = 0.0,
-    contact_stiffness: float | None = None,
-    scale: ArrayLike = 1.0,
-    threads: int | None = None,
-    progress: Progress | None = None,
-    watch: Watch | None = None,
-) -> xr.Dataset:
-    """Compute friction response spectra: peaks of one mass with friction, over its natural period.
-
-    The mass is held by a spring, a damper and a contact that move with the base, or stands on the ground
-    under a force.  It starts at rest, and is followed after the record until it rests permanently.
-    Everything is exact to rounding for the interpolated record.
-
-    Parameters
-    ----------
-    records : Record or sequence of Record
-        Motions of the base, or forces over the mass.
-    period : array_like
-        Natural periods, > 0, increasing, in the unit of time of the records; ``inf`` is a block without a
-        spring.
-    friction : array_like
-        Kinetic friction forces over the mass, >= 0, increasing; with a unit, such as ``"0.05 g"``, if the
-        records have one.
-    mu : array_like
-        Ratios of static to kinetic friction [-], >= 1, increasing.
-    damping : float
-        Damping ratio [-], >= 0.
-    contact_stiffness : float, optional
-        Stiffness of a spring in series with the contact, over that of the mass's spring, > 0; default:
-        rigid.  `stops` are then ends of slips.  It takes about a hundred times as long.
-    scale : array_like
-        Factors of the records, increasing.
-    threads : int, optional
-        Number of threads; default: all processors.  The result is equal to the bit for any number.
-    progress, watch : callable, optional
-        As in `sweep`.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over (record, scale, mu, period, beta): largest displacement and absolute acceleration, residual
-        displacement, sliding distance, stops, turns.
-
-    Raises
-    ------
-    InputError
-        An argument has the wrong type or is out of range.
-
-    Examples
-    --------
-    A block that slides without a spring, under a push of 1 for 2 s against friction of 0.3:
-
-    >>> import frictionmap as fm
-    >>> push = fm.Record([1.0, 1.0], dt=1.0, quantity="force", interpolation="hold")
-    >>> float(spectrum(push, float("inf"), 0.3).amplitude.squeeze().round(12))
-    4.666666666667
-    """
-    wanted = checked_spectra(
-        records, period, friction, mu=mu, damping=damping, contact_stiffness=contact_stiffness, scale=scale
-    )
-    count, scales, n_mu, n_period, n_beta = wanted.grid.shape
-    checks.cells(n_mu, n_period, n_beta, points=count * scales)
-    ds = computed(wanted, checks.threads(threads), progress, watch)
-    return ds.assign_attrs({
-        "Conventions": "CF-1.11", "title": "Friction response spectra",
-        "source": f"frictionmap {__version__}",
-        "references": REFERENCES, "history": f"{now()} frictionmap.spectrum",
-        **record_attributes(None, wanted.grid.records),
-    })  # fmt: skip
-
-
 class Asked(NamedTuple):
     """The oscillators of spectra, and the stiffness of their contact over that of the spring; None: rigid."""
 
@@ -216,6 +139,25 @@ def computed(
     return _labelled(grid, follow_elastic(grid, wanted.stiffness, sizes, threads, progress, watch))
 
 
+def at_once(
+    wanted: Asked, threads: int | None, progress: Progress | None = None, watch: Watch | None = None
+) -> xr.Dataset:
+    """Spectra in memory, with what they say of themselves."""
+    count, scales, n_mu, n_period, n_beta = wanted.grid.shape
+    checks.cells(n_mu, n_period, n_beta, points=count * scales)
+    ds = computed(wanted, checks.threads(threads), progress, watch)
+    return ds.assign_attrs(described(wanted.grid.records))
+
+
+def described(records: Sequence[Record]) -> dict[str, str]:
+    """What spectra say of themselves."""
+    return {
+        "Conventions": "CF-1.11", "title": "Friction response spectra",
+        "source": f"frictionmap {__version__}", "references": REFERENCES,
+        "history": f"{now()} frictionmap.spectrum", **record_attributes(None, records),
+    }  # fmt: skip
+
+
 def _oscillators(grid: Grid) -> tuple[Oscillators, np.ndarray]:
     """Oscillators under one record, and the factor of the record of each.
 
@@ -233,20 +175,37 @@ def _followed(grid: Grid, threads: int, progress: Progress | None, watch: Watch 
     """What became of all oscillators, (variables, *grid.shape)."""
     these, scale = _oscillators(grid)
     found = np.zeros((len(Responses._fields), len(grid.records), scale.size))
-    jobs: list[tuple[Callable[..., None], tuple]] = []
-    for k, record in enumerate(grid.records):
-        pieces = load_of(record)
-        parts = parts_of(pieces, these.w, these.zeta)
-        drives: dict[int, Driven] = {}
-        for count, members in in_lanes(parts):
-            if count not in drives:
-                drives[count] = driven(pieces, count, record.quantity != "force")
-            jobs.append((_run, (drives[count], these, members, found[:, k])))
-    run_counted(jobs, threads, progress, watch)
+    sizes: list[int] = []  # of the jobs that are made
+    ended = 0
+
+    def done(index: int) -> None:
+        nonlocal ended
+        ended += sizes[index]
+        if progress is not None:
+            progress(ended, found[0].size)
+
+    run_jobs(_jobs(grid.records, these, found, sizes), threads, done, watch)
     for name in ("amplitude", "acceleration_amplitude", "sliding_distance"):
         found[Responses._fields.index(name)] *= np.abs(scale)
     found[Responses._fields.index("residual")] *= scale
     return found.reshape((len(found), *grid.shape))
+
+
+def _jobs(
+    records: Sequence[Record], these: Oscillators, found: np.ndarray, sizes: list[int]
+) -> Iterator[Job]:
+    """Jobs of up to eight oscillators, whose numbers go to `sizes`.
+
+    They are made one by one: a record in parts of its samples is needed as long as its own jobs run.
+    """
+    for k, record in enumerate(records):
+        pieces = load_of(record)
+        drive = driven(pieces, 1, record.quantity != "force")
+        for count, members in in_lanes(parts_of(pieces, these.w, these.zeta)):
+            if count != drive.parts:
+                drive = driven(pieces, count, drive.base)
+            sizes.append(members.size)
+            yield _run, (drive, these, members, found[:, k])
 
 
 def _run(drive: Driven, these: Oscillators, members: np.ndarray, found: np.ndarray) -> None:

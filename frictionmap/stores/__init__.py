@@ -12,6 +12,7 @@ layout     the arrays of a store: their dimensions, types and chunks
 store      stores on disk: creation, identification, writing and marking of blocks
 run        computation of missing blocks in this process
 workers    computation of blocks by dask workers
+spectrum   `spectrum`: friction response spectra in memory or in a store
 =========  =============================================================================
 
 A block consists of complete rows, in r at one point of the study and one mu, or in the period under one

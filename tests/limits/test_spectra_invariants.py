@@ -1,5 +1,7 @@
 """Friction response spectra: scales, signs, order of cells, threads; statistics over records."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -7,9 +9,9 @@ from lcg_records import lcg
 from scipy.stats import binom
 
 import frictionmap as fm
-from frictionmap.motions import lanes
+from frictionmap import spectrum
+from frictionmap.motions import elastic_spectra, lanes
 from frictionmap.motions.record import Record
-from frictionmap.motions.spectra import spectrum
 from frictionmap.motions.statistics import exceedance, lognormal, median, over_scale, quantiles
 
 PERIODS = [0.3, 0.9, 1.0, 2.0, 5.0, np.inf]
@@ -190,3 +192,23 @@ def test_exceedance_counts_records():
     # one of three: P(at least 1) = 0.025 at the lower end, P(at most 1) = 0.025 at the upper one
     assert 1 - binom.cdf(0, 3, float(found.low[0])) == pytest.approx(0.025, rel=1e-9)
     assert binom.cdf(1, 3, float(found.high[0])) == pytest.approx(0.025, rel=1e-9)
+
+
+def peak_memory(records, **more):
+    tracemalloc.start()
+    try:
+        spectrum(records, [0.2, 1.0], [0.1, 0.2], threads=2, **more)
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.mark.parametrize(
+    ("samples", "more"), [(4000, {}), (300, {"contact_stiffness": 5.0})], ids=["rigid", "spring"]
+)
+def test_memory_does_not_grow_with_the_records(samples, more, monkeypatch):
+    """They are prepared one by one, or in groups with a contact spring; all at once it is five times."""
+    monkeypatch.setattr(elastic_spectra, "_TOGETHER", 4 * samples)
+    records = fm.Record.generate("white", 0.05 * samples, 0.05, rms=1.0, count=20)
+    peak_memory(records[:1], **more)  # what is loaded and compiled at first
+    assert peak_memory(records, **more) < 1.6 * peak_memory(records[:4], **more)

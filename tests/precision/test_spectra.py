@@ -6,8 +6,8 @@ from lcg_records import lcg
 from matrix_motion import followed
 from mpmath import mp
 
+from frictionmap import spectrum
 from frictionmap.motions.record import Record
-from frictionmap.motions.spectra import spectrum
 
 #: Rounding of some hundred samples and events.
 ROUNDING = 1e-11

@@ -83,6 +83,27 @@ def test_a_store_is_the_spectra_to_the_bit(tmp_path, records, cells):
         np.testing.assert_array_equal(found, given)  # of pulses, which are exact between samples
 
 
+def test_a_store_in_python(tmp_path):
+    """Stopped and repeated, the same bits as in memory."""
+    records, path = suite(), tmp_path / "s.zarr"
+
+    def stop(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fm.spectrum(records, **AXES, store=path, threads=1, progress=stop)
+    ds = fm.spectrum(records, **AXES, store=str(path))
+    same(ds, fm.spectrum(records, **AXES))
+    assert fm.open(path).attrs["title"] == "Friction response spectra"
+    with pytest.raises(InputError, match=r"its configuration differs, spectrum\.damping"):
+        fm.spectrum(records, **AXES, damping=0.1, store=path)
+    fm.spectrum(records, **AXES, damping=0.1, store=path, overwrite=True)
+    with pytest.raises(InputError, match=r"^store must be a path that ends in \.zarr; got 's\.nc'$"):
+        fm.spectrum(records, **AXES, store="s.nc")
+    with pytest.raises(InputError, match=r"^cannot use watch with store"):
+        fm.spectrum(records, **AXES, store=path, watch=lambda: None)
+
+
 def test_contacts_with_a_spring(tmp_path):
     records, axes = suite(2), {"period": [1.0, 3.0], "friction": [0.1, 0.4], "contact_stiffness": 5.0}
     path, wanted = tmp_path / "s.zarr", spectra_of(checked_spectra(records, **axes))

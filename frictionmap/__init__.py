@@ -23,6 +23,7 @@ theory         closed forms over frequency: beta_lim, beta_stick, continuous mot
 single         one rigid contact under one harmonic load: cells, maps, curves, motions
 general        several contacts, springs in contacts, belts, periodic loads: boundaries, maps, motions
 no_load        structures on belts without a load: steady sliding, and all cycles of one mass
+phases         systems with linear phases: normal forces that move, separation, gaps, bilinear springs
 solvers        the engines behind one interface, and which of them answers for a system
 steady         steady states: cells, maps, response curves, time histories; time and memory of a map
 stop_counts    borders between numbers of stops per cycle, as exact curves

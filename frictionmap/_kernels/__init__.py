@@ -19,6 +19,7 @@ long_periods       when a motion is searched for a long period, and when it is t
 general            any number of contacts, springs in contacts, belts, periodic loads
 history            motions in time under records
 no_load            one mass on a belt without a load: its phases, all its cycles
+phases             normal forces that move, separation, piecewise linear springs
 engine             solver of cells: recurrence, periodic orbits, outputs, stability, coexistence
 =================  =====================================================================================
 """

@@ -1,0 +1,12 @@
+"""Systems whose phases are linear: normal forces that move with the structure, separation, gaps, springs.
+
+==========  ==================================================================================
+module      what is in it
+==========  ==================================================================================
+system      matrices, contacts, springs and loads in one form, from a system or from arrays
+arrays      the same as arrays for the kernels
+quantities  outputs of cells: names, what they are computed from
+motion      one motion in time, from the Taylor terms of its steps
+solve       steady motions over mu, r and beta
+==========  ==================================================================================
+"""

@@ -1,0 +1,147 @@
+"""Steady motions over mu, r and beta."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from .. import checks
+from .._kernels.phases.fill import AVERAGED, PERIOD, Cells, Grid, fill_cells
+from ..errors import InputError
+from ..jobs import Job, Progress, Watch, run_counted
+from .arrays import Modal, allocate, grid_of, modal, problem_of, row_of
+from .motion import events, in_time, steps_of, works
+from .quantities import TABLE, solved_of
+from .system import PhaseSystem
+
+#: Outputs where none are named.
+OUTPUTS = ("regime", "status", "period", "contact_amplitude", "open_fraction")
+
+#: Cycles of a motion that does not repeat that are shown.
+_SHOWN = 8
+
+Start = Any  # "rest", "moving", or a state (2, n): displacements and velocities over omega at tau = 0
+
+
+def observed_rows(n: int) -> np.ndarray:
+    """Displacements of the masses, and of the storeys."""
+    whole = np.eye(n)
+    return np.concatenate((whole, whole - np.eye(n, k=-1)))
+
+
+def start_state(system: PhaseSystem, modes: Modal, r: float, start: Start) -> np.ndarray:
+    """Modes and their velocities at tau = 0, (2, m).
+
+    "moving" is the steady motion of the structure without contacts and springs.
+    """
+    state = np.zeros((2, system.n))
+    if isinstance(start, str):
+        checks.choice(start, "start", ("rest", "moving"))
+        for n, load in system.loads.items() if start == "moving" else ():
+            dynamic = np.diag(modes.squares) - (n * r) ** 2 * np.eye(system.n) + 1j * n * r * modes.damping
+            q = np.linalg.solve(dynamic, modes.phi.T @ load)
+            state += np.stack((q.real, -n * q.imag))
+        return state
+    given = checks.array(start, "start").astype(float)
+    if given.shape != (2, system.n) or not np.isfinite(given).all():
+        raise InputError("start", f"must be a state (2, {system.n}); got shape {given.shape}")
+    return np.stack([np.linalg.solve(modes.phi, one) for one in given])
+
+
+def _unknown(outputs: Sequence[str]) -> None:
+    for name in outputs:
+        if name not in TABLE:
+            raise InputError(
+                f"unknown output {name!r}{checks.nearest(name, list(TABLE))}; valid: {', '.join(TABLE)}"
+            )
+
+
+def sweep_phases(
+    system: PhaseSystem, r: np.ndarray, beta: np.ndarray, mu: np.ndarray,
+    outputs: Sequence[str] = OUTPUTS, start: Start = "rest", cycles: int = 2000, threads: int = 1,
+    progress: Progress | None = None, watch: Watch | None = None,
+) -> dict[str, np.ndarray]:  # fmt: skip
+    """Steady motions over mu, r > 0 and beta.
+
+    Parameters
+    ----------
+    system : PhaseSystem
+    r, beta, mu : axes
+    outputs : names of `quantities.TABLE`
+    start : "rest", "moving", or a state (2, n)
+    cycles : periods of the load that a motion is followed at most
+    threads, progress, watch : as in `sweep`
+
+    Returns
+    -------
+    dict
+        Arrays (n_mu, n_r, n_beta, ...) by name; of contacts, masses or springs with a last dimension.
+    """
+    _unknown(outputs)
+    r, beta, mu = (np.atleast_1d(np.asarray(axis, dtype=float)) for axis in (r, beta, mu))
+    modes = modal(system)
+    problem = problem_of(system, modes, observed_rows(system.n))
+    cancel = np.zeros(1, np.uint8)
+    jobs: list[Job] = []
+    found: list[Cells] = []
+    for ratio in mu:
+        for one in r:
+            grid = grid_of(system, modes, beta, float(ratio), cycles)
+            grid = grid._replace(start=start_state(system, modes, float(one), start))
+            found.append(allocate(problem, beta.size))
+            row = row_of(system, problem, modes, float(one))
+            jobs.append((fill_cells, (problem, row, grid, 0, found[-1], cancel)))
+    try:
+        run_counted(jobs, threads, progress, watch)
+    except BaseException:
+        cancel[0] = 1
+        raise
+    solved = [solved_of(problem, one) for one in found]
+    shape = (mu.size, r.size, beta.size)
+    tables = {name: np.stack([TABLE[name](one) for one in solved]) for name in outputs}
+    return {name: table.reshape(shape + table.shape[2:]) for name, table in tables.items()}
+
+
+def response_phases(
+    system: PhaseSystem, r: float, beta: float, mu: float, points: int = 1000, start: Start = "rest",
+    cycles: int = 2000,
+) -> dict[str, np.ndarray]:  # fmt: skip
+    """One steady motion over its cycle: traces over tau, events, and all outputs as numbers.
+
+    A motion that does not repeat is shown for some periods.
+
+    Parameters
+    ----------
+    system : PhaseSystem
+    r, beta, mu : the cell
+    points : times per period of the load
+    start, cycles : as in `sweep_phases`
+
+    Returns
+    -------
+    dict
+        tau (T,), traces (..., T), events, numbers of the motion; without traces where none was found.
+    """
+    modes = modal(system)
+    problem = problem_of(system, modes, observed_rows(system.n))
+    row = row_of(system, problem, modes, r)
+    grid = grid_of(system, modes, np.array([beta]), mu, cycles)
+    grid = grid._replace(start=start_state(system, modes, r, start))
+    cells, motion = _one(problem, row, grid, 0)
+    averaged = cells.numbers[0, AVERAGED]
+    numbers = {name: values(solved_of(problem, cells))[0] for name, values in TABLE.items()}
+    if not averaged > 0.0:
+        return numbers
+    cells, motion = _one(problem, row, grid, int(motion.record.count[0]))
+    steps = steps_of(problem, row, motion)
+    numbers |= works(system, modes, steps, r, int(averaged))
+    shown = int(cells.numbers[0, PERIOD]) or min(_SHOWN, int(averaged))
+    tau = np.linspace(0.0, 2.0 * np.pi * shown, shown * points + 1)
+    traces = in_time(system, problem, modes, steps, grid.preload[0], tau)
+    return {"tau": tau, **traces, **events(steps), **numbers}
+
+
+def _one(problem: Any, row: Any, grid: Grid, steps: int) -> tuple[Cells, Any]:
+    """One cell, and the motion whose record keeps its steps."""
+    cells = allocate(problem, 1)
+    return cells, fill_cells(problem, row, grid, steps, cells, np.zeros(1, np.uint8))

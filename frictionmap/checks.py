@@ -2,6 +2,7 @@
 
 import math
 import os
+from collections.abc import Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -120,6 +121,16 @@ def number(
     if result > most:
         raise InputError(name, f"must be <= {most:g}; got {value}")
     return result
+
+
+def number_list(given: Any, name: str) -> tuple[float, ...]:
+    """Check a list of numbers, not empty."""
+    listed = isinstance(given, Sequence) and not isinstance(given, (str, bytes))
+    if not listed and not (is_array(given) and array(given, name).ndim == 1):
+        raise InputError(name, f"must be a list of numbers; got {one_line(given)}")
+    if len(given) == 0:
+        raise InputError(name, "must have at least one value; got none")
+    return tuple(number(one, f"{name}[{k}]") for k, one in enumerate(given))
 
 
 def whole(value: object, name: str, *, least: int, most: int | None = None) -> int:

@@ -8,6 +8,8 @@ shown               short texts of settings
 settings            settings of the solver and of response curves; names of the outputs
 periodic_load       loads of several harmonics: waveforms, tables, samples
 friction_law        friction over the sliding speed: break points, formulas brought to that form
+normal_contact      normal force that moves with the structure, with separation
+spring_element      piecewise linear springs: gaps, backlash, bilinear springs
 contact             a contact with its spring, belt and normal load
 general             systems with several contacts or harmonics: checks, parallel contacts, loops
 sizes               sizes of steady states that a design is about

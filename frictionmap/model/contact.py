@@ -9,6 +9,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from .friction_law import friction_law, law_table
+from .normal_contact import normal_force
 from .periodic_load import scalar_harmonics
 from .shown import Shown
 
@@ -64,6 +65,10 @@ class Contact(Shown):
         omega_1 P/k_1.  Default: the same at all speeds.
     law_file : path, optional
         Instead: a CSV file with the columns speed, factor.
+    normal : NormalForce or mapping, optional
+        A normal force that moves with the structure, and lets the contact open: { mass, stiffness, friction,
+        side, preload }, or `masses` or `vector` instead of `mass`; see `NormalForce`.  Its friction at
+        preload is beta, or phi times the preload if that is given.
 
     Raises
     ------
@@ -84,6 +89,7 @@ class Contact(Shown):
     normal_record: Any = None
     law: Any = None
     law_file: Any = None
+    normal: Any = None
     nu: Mapping[int, complex] = field(init=False, repr=False, compare=False, default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -100,7 +106,9 @@ class Contact(Shown):
         ):  # fmt: skip
             if getattr(self, name) is not None:
                 self._set(name, numbers(getattr(self, name), name, **ends))
-        if self.ratio is None and self.force is None:
+        if self.normal is not None:
+            self._check_normal()
+        if self.ratio is None and self.force is None and not self.has_preload:
             self._set("ratio", 1.0)
         self._check_bank()
         for name in WALLS:
@@ -146,6 +154,36 @@ class Contact(Shown):
                 raise InputError(
                     name, f"must have as many values as stiffness ({len(self.stiffness)}); got {len(given)}"
                 )
+
+    @property
+    def has_preload(self) -> bool:
+        """Whether its friction at preload is phi N0, and neither `ratio` nor `force`."""
+        return self.normal is not None and self.normal.preload is not None
+
+    def _check_normal(self) -> None:
+        """Read the normal force, and refuse it where another key defines it."""
+        self._set("normal", normal_force(self.normal))
+        for name, why in (
+            ("law", "friction over speed needs a constant normal force"),
+            ("law_file", "friction over speed needs a constant normal force"),
+            ("normal_load", "both define the normal force"),
+            ("normal_record", "both define the normal force"),
+        ):
+            if getattr(self, name) is not None:
+                raise InputError("cannot use", "normal", f"with {name}: {why}; omit one")
+        for name in ("ratio", "force"):
+            if self.has_preload and getattr(self, name) is not None:
+                raise InputError(
+                    "cannot use",
+                    "normal.preload",
+                    f"with {name}: both define the friction at preload, phi N0; omit one",
+                )
+        if isinstance(self.stiffness, tuple):
+            raise InputError(
+                "stiffness",
+                f"must be one number with normal, as banks share a constant normal force; "
+                f"got {list(self.stiffness)}",
+            )
 
     def _check_law(self) -> None:
         """Read the law, and refuse it where it is another model; a flat law is none."""

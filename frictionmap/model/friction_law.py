@@ -83,7 +83,7 @@ class FrictionLaw(Shown):
 
     def __post_init__(self) -> None:
         for name in ("speed", "factor"):
-            object.__setattr__(self, name, _numbers(getattr(self, name), name))
+            object.__setattr__(self, name, checks.number_list(getattr(self, name), name))
         for name in ("slope", "error"):
             object.__setattr__(self, name, checks.number(getattr(self, name), name))
         self._check_points()
@@ -143,16 +143,6 @@ class FrictionLaw(Shown):
         """Friction over that just above speed 0 at speeds >= 0."""
         v = np.asarray(speed, dtype=float)
         return np.interp(v, self.speed, self.factor) + self.slope * np.maximum(v - self.speed[-1], 0.0)
-
-
-def _numbers(given: Any, name: str) -> tuple[float, ...]:
-    """Check a list of numbers, not empty."""
-    listed = isinstance(given, Sequence) and not isinstance(given, (str, bytes))
-    if not listed and not (checks.is_array(given) and checks.array(given, name).ndim == 1):
-        raise InputError(name, f"must be a list of numbers; got {checks.one_line(given)}")
-    if len(given) == 0:
-        raise InputError(name, "must have at least one value; got none")
-    return tuple(checks.number(one, f"{name}[{k}]") for k, one in enumerate(given))
 
 
 def formula_law(

@@ -16,6 +16,7 @@ from .. import checks
 from ..errors import InputError
 from ..structures.dofs import Dofs
 from .contact import MOST_CONTACTS, WALLS, Contact, checked_contacts
+from .normal_contact import MovingNormal
 from .periodic_load import (
     DEFAULT_HARMONICS,
     ENTRY_KEYS,
@@ -30,11 +31,12 @@ from .periodic_load import (
     scalar_harmonics,
     waveform,
 )
+from .spring_element import SpringElement
 
 #: Keys of a system that only this engine takes.
 KEYS = (
     "contacts", "contact_stiffness", "wall_velocity", "wall_speed", "normal_load", "load_harmonics",
-    "load_file", "waveform", "load_offset",
+    "load_file", "waveform", "load_offset", "springs",
 )  # fmt: skip
 
 #: What a moving base holds constant over frequency: its displacement, or its acceleration.
@@ -101,6 +103,9 @@ class Definition(Protocol):
     def load_offset(self) -> Any: ...
 
     @property
+    def springs(self) -> Any: ...
+
+    @property
     def n(self) -> int: ...
 
     @property
@@ -123,6 +128,7 @@ class MergedContact:
     members: tuple[Contact, ...]
     vector: np.ndarray  # (n,) c
     base: int  # s: 1 if its wall moves with the base
+    normal: MovingNormal | None = None  # a normal force that moves with the structure
 
     @property
     def first(self) -> Contact:
@@ -144,10 +150,17 @@ class MergedContact:
         kinetic: Any = 0.0
         static: Any = 0.0
         for one in self.members:
-            own: Any = one.ratio * beta if one.force is None else one.force  # type: ignore[operator]
+            own = self._kinetic(one, beta)
             kinetic = kinetic + own
             static = static + own * one.static_ratio(mu)
         return kinetic, static
+
+    @staticmethod
+    def _kinetic(one: Contact, beta: Any) -> Any:
+        """Kinetic friction of a member; with a moving normal force that at preload."""
+        if one.has_preload:
+            return one.normal.friction * max(0.0, one.normal.preload) + 0.0 * beta
+        return one.ratio * beta if one.force is None else one.force
 
 
 @dataclass(frozen=True)
@@ -160,6 +173,7 @@ class ContactSystem:
     offset: np.ndarray  # (n,) constant loads
     loop: str = ""  # numbers of the rigid contacts that close a loop; empty without one
     free: bool = False  # whether the structure has rigid-body modes; set by the system
+    springs: tuple[SpringElement, ...] = ()  # piecewise linear ones
 
     @property
     def count(self) -> int:
@@ -184,6 +198,8 @@ class ContactSystem:
     def rows(self) -> list[int]:
         """Rows of the masses in contact or under load, counted from 0."""
         used = [*self.vectors, *self.forces.values(), self.offset]
+        used += [group.normal.direction for group in self.groups if group.normal is not None]
+        used += [spring.direction for spring in self.springs]
         return np.flatnonzero(np.any(used, axis=0)).tolist()
 
     def at(self, rows: np.ndarray) -> "ContactSystem":
@@ -210,6 +226,11 @@ class ContactSystem:
     def has_law(self) -> bool:
         """Whether the friction of a contact depends on its speed."""
         return any(group.first.law is not None for group in self.groups)
+
+    @property
+    def has_phases(self) -> bool:
+        """Whether the stiffness changes with the motion: contacts that open, piecewise linear springs."""
+        return bool(self.springs) or any(group.normal is not None for group in self.groups)
 
     def has_equal_friction(self, mu: float) -> bool:
         """Whether static and kinetic friction of every contact are equal at this mu of the grid."""
@@ -242,7 +263,8 @@ def contact_system(system: Definition) -> ContactSystem:
             "cannot use", "load_offset", "with base excitation: it is a force on each mass; omit one"
         )
     offset = _offset(system.load_offset, system.n)
-    found = ContactSystem(groups, forces, base, offset, _describe_loop(groups))
+    springs = tuple(one.on(system.dofs, f"springs[{k}]") for k, one in enumerate(system.springs or (), 1))
+    found = ContactSystem(groups, forces, base, offset, _describe_loop(groups), springs=springs)
     if not found.forces and not found.base:
         if not any(group.first.belt for group in groups):
             raise InputError("load_harmonics", "must have a harmonic that is not zero; got none")
@@ -362,7 +384,7 @@ def _groups(system: Definition) -> tuple[MergedContact, ...]:
         vector = vector_of(contact, system.dofs, mass_key(system, k))
         for i, other in enumerate(found):
             same = np.array_equal(other.vector, vector) and other.base == base
-            if not same or contact.stiffness is not None or other.first.stiffness is not None:
+            if not same or any(not _may_merge(one) for one in (contact, other.first)):
                 continue
             walls = any(getattr(contact, name) != getattr(other.first, name) for name in WALLS)
             same_load = contact.nu == other.first.nu and contact.normal_record is other.first.normal_record
@@ -375,10 +397,16 @@ def _groups(system: Definition) -> tuple[MergedContact, ...]:
             found[i] = MergedContact((*other.members, contact), vector, base)
             break
         else:
-            found.append(MergedContact((contact,), vector, base))
-    if not any(one.ratio or one.force for one in contacts):
+            normal = None if contact.normal is None else contact.normal.on(system.dofs, f"{name}.normal")
+            found.append(MergedContact((contact,), vector, base, normal))
+    if not any(one.ratio or one.force or one.has_preload for one in contacts):
         raise InputError("contacts", "must have a ratio or a force > 0; got none")
     return tuple(found)
+
+
+def _may_merge(contact: Contact) -> bool:
+    """Whether a contact acts as one with others that are parallel to it."""
+    return contact.stiffness is None and contact.normal is None
 
 
 def _describe_loop(groups: Sequence[MergedContact]) -> str:
@@ -566,6 +594,8 @@ def _describe_group(group: MergedContact, dofs: Dofs) -> str:
         more.append(f"wall speed {one.wall_speed:g}")
     if one.nu:
         more.append("varying normal load")
+    if one.normal is not None:
+        more.append(f"normal force of stiffness {one.normal.stiffness:g}, friction {one.normal.friction:g}")
     if one.law is not None:
         more.append(f"friction over speed, {len(one.law.speed)} segments")
     if len(group.members) > 1:

@@ -48,6 +48,7 @@ from .modes import (
 from .periodic_load import PeriodicLoad
 from .rigid_modes import FreeModel, check_free, free_model, sort_rigid, without_rigid
 from .shown import Shown
+from .spring_element import Spring, SpringElement, checked_springs
 
 EXCITATIONS = ("force", "base")
 DAMPING_REFERENCES = ("ground", "base")
@@ -234,6 +235,8 @@ class System(Shown):
         `harmonics`.
     load_offset : sequence of float, optional
         Constant forces [P] on all n masses; they move positions only.
+    springs : sequence of Spring or mapping, optional
+        1 to 8 piecewise linear springs: gaps, backlash, bilinear springs.
 
     Raises
     ------
@@ -276,6 +279,7 @@ class System(Shown):
     harmonics: int | None = None
     load_offset: Sequence[float] | None = None
     dampers: Sequence[float] | None = None
+    springs: Sequence[Spring | Mapping[str, Any]] | None = None
     _scale: float | None = field(default=None, init=False, repr=False)
     _contact_system: ContactSystem = field(init=False, repr=False, compare=False)
 
@@ -288,6 +292,8 @@ class System(Shown):
         if self.contact_stiffness is not None:
             self._set("contact_stiffness", numbers(self.contact_stiffness, "contact_stiffness", above=0.0))
         self._set("contacts", check_contacts(self))
+        if self.springs is not None:
+            self._set("springs", checked_springs(self.springs))
         self._check_contact()
         self._check_load()
         if isinstance(self.matrices, Structure) and self.reduce is None:
@@ -485,6 +491,11 @@ class System(Shown):
     def general(self) -> ContactSystem | None:
         """Data of the general engine; None for one rigid contact under one harmonic load."""
         return self._contact_system if uses_general(self) or self.rigid_modes else None
+
+    @property
+    def spring_elements(self) -> tuple[SpringElement, ...]:
+        """The piecewise linear springs over the present masses."""
+        return self._contact_system.springs
 
     @property
     def rigid_modes(self) -> int:

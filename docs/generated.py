@@ -22,7 +22,8 @@ HERE = Path(__file__).resolve().parent
 #: The public names, grouped by purpose; a name in none of these groups is added to the last one.
 _GROUPS: Mapping[str, tuple[str, ...]] = {
     "Systems and settings": (
-        "System", "Contact", "FrictionLaw", "PeriodicLoad", "Solver", "Units", "load_config",
+        "System", "Contact", "FrictionLaw", "NormalForce", "Spring", "PeriodicLoad", "Solver", "Units",
+        "load_config",
     ),
     "Maps, curves, motions": (
         "sweep", "boundaries", "borders", "curves", "response", "continuous_motion", "shares",

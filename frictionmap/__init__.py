@@ -64,9 +64,11 @@ if TYPE_CHECKING:
     from .files.opening import open  # fm.open, as in other packages of files
     from .model.contact import Contact
     from .model.friction_law import FrictionLaw
+    from .model.normal_contact import NormalForce
     from .model.periodic_load import PeriodicLoad
     from .model.sectors import ring
     from .model.settings import Solver
+    from .model.spring_element import Spring
     from .model.system import System
     from .motions.dataset import history
     from .motions.record import Record
@@ -104,9 +106,11 @@ __all__ = [
     "FrictionLaw",
     "InputError",
     "NoSteadyState",
+    "NormalForce",
     "PeriodicLoad",
     "Record",
     "Solver",
+    "Spring",
     "System",
     "Units",
     "__version__",
@@ -151,6 +155,8 @@ __all__ = [
 _HOME = {
     "Contact": "model.contact",
     "FrictionLaw": "model.friction_law",
+    "NormalForce": "model.normal_contact",
+    "Spring": "model.spring_element",
     "PeriodicLoad": "model.periodic_load",
     "Record": "motions.record",
     "Solver": "model.settings",

@@ -25,6 +25,8 @@ __all__ = [
     "CLOSED_FORM",
     "COINCIDENCE",
     "CONTINUOUS",
+    "DIVERGENCE",
+    "FLUTTER",
     "INSIDE",
     "INTEGRATED",
     "IRREGULAR",
@@ -42,6 +44,7 @@ __all__ = [
     "REACHABLE",
     "REGIMES",
     "RESOLVED",
+    "SLIDING_LIMIT_KINDS",
     "STATUSES",
     "STICK_SLIP",
     "TOO_MANY_EVENTS",
@@ -72,6 +75,8 @@ TURN = 1
 INSIDE = 2
 COINCIDENCE = 3
 UNLOADED = 4
+FLUTTER = 5
+DIVERGENCE = 6
 
 CLOSED_FORM = 0
 INTEGRATED = 1
@@ -127,6 +132,13 @@ LIMIT_KINDS = (
     Code(INSIDE, "inside", "between two turns a contact comes to a stop"),
     Code(COINCIDENCE, "coincidence", "two contacts that act on each other turn at the same time"),
     Code(UNLOADED, "unloaded", "a contact that does not move without friction sticks for any friction"),
+)
+
+#: What makes steady sliding on a belt unstable; `NO_LIMIT` if nothing does.
+SLIDING_LIMIT_KINDS = (
+    Code(NO_LIMIT, "no_limit", "no friction makes it unstable"),
+    Code(FLUTTER, "flutter", "two modes couple, or one is driven, and vibrations grow"),
+    Code(DIVERGENCE, "divergence", "the contact locks itself: the friction pulls it into the belt"),
 )
 
 #: Bits of `also_reachable`.

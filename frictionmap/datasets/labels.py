@@ -549,6 +549,26 @@ CURVES = {
     "beta_noslip": Label(
         np.float64, "friction ratio at or above which no elastic contact slips", ("r",), least=0.0, inf=True
     ),
+    "self_locking": Label(
+        np.int8,
+        "whether a contact with a normal force that moves with the structure locks itself",
+        ("mu",),
+        (
+            regimes.Code(0, "no", "a load can be too large to be held"),
+            regimes.Code(1, "yes", "a constant force in the contact can hold any load"),
+        ),
+    ),
+    "friction_lim": Label(
+        np.float64,
+        "friction coefficient from which steady sliding on a belt is unstable",
+        (),
+        comment="of a contact with a normal force that moves with the structure; phi, at any preload",
+        least=0.0,
+        inf=True,
+    ),
+    "friction_lim_kind": Label(
+        np.int8, "what makes steady sliding unstable at friction_lim", (), regimes.SLIDING_LIMIT_KINDS
+    ),
     "no_stop_begin": Label(
         np.float64,
         "start of each interval of the friction ratio without stops",

@@ -4,10 +4,10 @@ import json
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from datetime import UTC, datetime
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,7 +17,9 @@ from ..model.matrices import Matrices
 
 if TYPE_CHECKING:
     from ..model.contact import Contact
+    from ..model.normal_contact import NormalForce
     from ..model.settings import Solver
+    from ..model.spring_element import Spring
     from ..model.system import System
     from ..structures.dofs import Dofs
     from ..units.scales import Units
@@ -177,7 +179,35 @@ def _contacts_and_loads(system: "System") -> dict[str, object]:
         found |= {"load_harmonics": entries, "load_mass": 1}
     if system.load_offset is not None:
         found["load_offset"] = system.contact_system.offset.tolist()
+    if system.springs is not None:
+        found["springs"] = [_spring_keys(one, system.dofs) for one in system.springs]  # type: ignore[arg-type]
     return found
+
+
+def _spring_keys(spring: "Spring", dofs: "Dofs") -> dict[str, object]:
+    """A piecewise linear spring as an entry of system.springs; its masses by their numbers."""
+    found = _given_keys(spring)
+    return found | {"masses": [dofs.number(one, "masses") for one in spring.masses]}  # type: ignore[union-attr]
+
+
+def _normal_keys(normal: "NormalForce", dofs: "Dofs") -> dict[str, object]:
+    """A normal force as the table of a contact; its masses by their numbers."""
+    found = _given_keys(normal)
+    if normal.mass is not None:
+        found["mass"] = dofs.number(normal.mass, "mass")
+    if normal.masses is not None:
+        found["masses"] = [dofs.number(one, "masses") for one in normal.masses]
+    return found
+
+
+def _given_keys(one: Any) -> dict[str, object]:
+    """The fields of a description that are not None; lists as such."""
+    own = {field.name: getattr(one, field.name) for field in fields(one)}
+    return {
+        key: list(value) if isinstance(value, tuple) else value
+        for key, value in own.items()
+        if value is not None
+    }
 
 
 def _contact_keys(contact: "Contact", dofs: "Dofs") -> dict[str, object]:
@@ -191,6 +221,8 @@ def _contact_keys(contact: "Contact", dofs: "Dofs") -> dict[str, object]:
     found = {"kind": contact.kind, "masses": masses, **own, "normal_load": normal or None}
     if contact.law is not None:
         found["law"] = contact.law.as_keys()
+    if contact.normal is not None:
+        found["normal"] = _normal_keys(contact.normal, dofs)
     return {
         key: value
         for key, value in found.items()

@@ -35,7 +35,7 @@ _SECTIONS: dict[str, tuple[str, ...] | None] = {
     "axes": None,
 }
 #: Keys of contacts that [system] has not.
-_OF_CONTACTS = ("kind", "ratio", "stiffness", "law", "law_file")
+_OF_CONTACTS = ("kind", "ratio", "stiffness", "law", "law_file", "normal")
 #: Key of [grid] in the place of beta: friction over the normal force of [units].
 _COEFFICIENT = "friction_coefficient"
 

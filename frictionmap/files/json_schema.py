@@ -26,9 +26,15 @@ _TOGETHER: list[Schema] = [
     {
         "dependentSchemas": {
             "masses": {"properties": {"mass_ratios": False, "matrices": False}},
-            "springs": {"properties": {"stiffness_ratios": False, "matrices": False}},
             "dampers": {"properties": {"damping_ratios": False, "matrices": False}},
         }
+    },
+    {
+        "if": {  # springs of a chain, not tables of springs
+            "properties": {"springs": {"items": {"type": "string"}}},
+            "required": ["springs"],
+        },
+        "then": {"properties": {"stiffness_ratios": False, "matrices": False}},
     },
     {"dependentSchemas": {"rayleigh": {"properties": {"damping_ratios": False}}}},
     {

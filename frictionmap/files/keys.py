@@ -25,6 +25,7 @@ from ..model.settings import (
     Steady,
     curve_settings,
 )
+from ..model.spring_element import MOST_KNOTS, MOST_SPRINGS
 from ..model.system import DAMPING_REFERENCES, EXCITATIONS, System
 from ..units.axes import KINDS
 from ..units.dimensions import DIMENSIONS, RATIOS, kinds_of
@@ -147,6 +148,32 @@ _LAW = either(
         ("formula", "kinetic", "speed"),
     ),
 )
+_MOVING_NORMAL = table(
+    {
+        "mass": DOF,
+        "masses": several(DOF, 2, maxItems=2),
+        "vector": several(number()),
+        "stiffness": _or_unit(number(above=0.0), "contacts[].normal.stiffness"),
+        "friction": number(least=0.0),
+        "side": {"enum": [1, -1]},
+        "preload": _or_unit(number(), "contacts[].normal.preload"),
+    },
+    ("stiffness", "friction"),
+)
+_ELEMENT = table(
+    {
+        "masses": either(DOF, several(DOF, maxItems=2)),
+        "gap": _or_unit(number(least=0.0), "springs[].gap"),
+        "backlash": _or_unit(number(above=0.0), "springs[].backlash"),
+        "stiffness": _or_unit(number(above=0.0), "springs[].stiffness"),
+        "side": {"enum": [1, -1]},
+        "displacement": several(_or_unit(number(), "springs[].displacement"), maxItems=MOST_KNOTS),
+        "force": several(_or_unit(number(), "springs[].force"), maxItems=MOST_KNOTS),
+        "stiffness_below": _or_unit(number(least=0.0), "springs[].stiffness_below"),
+        "stiffness_above": _or_unit(number(least=0.0), "springs[].stiffness_above"),
+        "name": _NAME,
+    }
+)
 _HARMONIC = {
     **{name: _or_unit(number(), f"load_harmonics[].{name}") for name in ("amplitude", "re", "im")},
     "n": whole(least=1, most=MOST_HARMONICS),
@@ -167,6 +194,18 @@ def _chain(name: str, meaning: str) -> Key:
     example = f'["{EXAMPLES[kind]}"]'
     words = f"numbers > 0, each with one of {', '.join(units_of(kind))}"
     return Key(name, f"instead of {RATIOS[name]}: {meaning}", several(with_unit(kind)), None, example, words)
+
+
+def _springs() -> Key:
+    """Springs of a chain with their units, or piecewise linear springs."""
+    of_chain = _chain("springs", "springs of a chain; the first one connects mass 1 to the ground")
+    return of_chain._replace(
+        meaning=f"{of_chain.meaning}; or [[system.springs]], piecewise linear springs: one behind a gap, one "
+        "with backlash to either side, or forces at displacements",
+        valid=either(of_chain.valid, several(_ELEMENT, maxItems=MOST_SPRINGS)),
+        words=f"{of_chain.words}; or a list of {{ masses, gap or backlash, stiffness }} or of {{ masses, "
+        "displacement, force, stiffness_below, stiffness_above }",
+    )
 
 
 #: Friction of motions in time.
@@ -261,13 +300,14 @@ GENERAL_KEYS = (
                     "normal_load": _NORMAL,
                     "law": _LAW,
                     "law_file": _NAME,
+                    "normal": _MOVING_NORMAL,
                 },
             ),
             maxItems=MOST_CONTACTS,
         ),
         example='[{ kind = "fixed-wall", masses = [1] }, { kind = "between-masses", masses = [1, 2] }]',
         words="a list of { kind, masses, ratio or force, mu, name, stiffness, wall_velocity or wall_speed, "
-        "normal_load, law or law_file }; "
+        "normal_load, law or law_file, normal }; "
         "lists of stiffness and ratio or force make a bank of elements",
     ),
 )
@@ -442,7 +482,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
             words="numbers > 0; the first may be 0",
         ),
         _chain("masses", "masses of a chain; the first one is units.mass"),
-        _chain("springs", "springs of a chain; the first one connects mass 1 to the ground"),
+        _springs(),
         Key(
             "dampers",
             "instead of damping_ratios: dashpots of a chain over sqrt(k_1 m_1), each beside its spring",

@@ -37,7 +37,7 @@ _SPAN = 1e-10
 _ENDLESS = 1e12
 
 
-def _linear(
+def linear_parts(
     system: System, stiffness: np.ndarray, order: int, r: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Dynamic stiffness (n_r, n, n) and load (n_r, n) of a harmonic, without forces in contacts."""
@@ -79,7 +79,7 @@ def held_forces_of(
     for order in orders_of(general):
         matrix = np.zeros((r.size, n + w.shape[1], n + w.shape[1]), dtype=complex)
         right = np.zeros((r.size, n + w.shape[1]), dtype=complex)
-        matrix[:, :n, :n], right[:, :n] = _linear(system, stiffness, order, r)
+        matrix[:, :n, :n], right[:, :n] = linear_parts(system, stiffness, order, r)
         matrix[:, :n, n:], matrix[:, n:, :n] = w, w.T
         u = general.base.get(order, 0.0)
         right[:, :n] += u * (vectors.T * kt) @ moved
@@ -123,7 +123,7 @@ def sliding_phasors(system: System, r: np.ndarray) -> np.ndarray:
     moved = np.array([float(group.base) for group in general.groups])
     found = []
     for order in orders_of(general):
-        x = solve_each(*_linear(system, system.modes.stiffness, order, r))
+        x = solve_each(*linear_parts(system, system.modes.stiffness, order, r))
         with np.errstate(invalid="ignore"):  # an infinite x
             found.append(x @ general.vectors.T - general.base.get(order, 0.0) * moved)
     return np.stack(found, axis=-1)

@@ -31,7 +31,7 @@ from .periodic_load import (
     scalar_harmonics,
     waveform,
 )
-from .spring_element import SpringElement
+from .spring_element import Spring, SpringElement
 
 #: Keys of a system that only this engine takes.
 KEYS = (
@@ -302,6 +302,23 @@ def refuse_law(system: Definition, what: str) -> None:
             )
 
 
+def refuse_phases(system: Definition, what: str) -> None:
+    """Refuse contacts that open, and piecewise linear springs.
+
+    what : words after "cannot", such as "compute motions under records"
+    """
+    keys = [
+        f"contacts[{k}].normal" for k, one in enumerate(system.contacts or (), 1) if one.normal is not None
+    ]
+    if system.springs is not None:
+        keys.append("springs")
+    if keys:
+        raise InputError(
+            f"cannot {what} with {keys[0]}: contacts that open and piecewise linear springs are not offered "
+            f"there; omit {keys[0]}"
+        )
+
+
 def contacts_of(system: Definition) -> tuple[Contact, ...]:
     """The contacts of a system, in either form; banks as one contact each."""
     if system.contacts is not None:
@@ -568,6 +585,27 @@ def format_orders(orders: Sequence[int]) -> str:
     if len(orders) <= 6:
         return ", ".join(map(str, orders))
     return f"{orders[0]}, {orders[1]}, ..., {orders[-1]}"
+
+
+def describe_springs(springs: Sequence[Spring], dofs: Dofs) -> str:
+    """Describe piecewise linear springs in one line."""
+    return "; ".join(_describe_spring(one, dofs) for one in springs)
+
+
+def _describe_spring(one: Spring, dofs: Dofs) -> str:
+    masses: tuple = one.masses  # type: ignore[assignment]
+    words = [dofs.word(dofs.number(mass, "masses")) for mass in masses]
+    if len(words) == 2:
+        where = f"between masses {words[0]} and {words[1]}"
+    else:
+        where = (
+            "between the mass and the ground" if dofs.n == 1 else f"between mass {words[0]} and the ground"
+        )
+    if one.gap is not None:
+        return f"spring {where} (gap {'-' * (one.side == -1)}{one.gap:g}, stiffness {one.stiffness:g})"
+    if one.backlash is not None:
+        return f"spring with backlash {one.backlash:g} {where} (stiffness {one.stiffness:g})"
+    return f"piecewise linear spring {where} (knots {len(one.displacement or ())})"
 
 
 def describe_contacts(general: ContactSystem, dofs: Dofs) -> str:

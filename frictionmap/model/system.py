@@ -30,8 +30,10 @@ from .general import (
     contact_rows,
     contact_system,
     describe_contacts,
+    describe_springs,
     format_orders,
     mass_key,
+    refuse_phases,
     uses_general,
 )
 from .html import as_table
@@ -319,6 +321,8 @@ class System(Shown):
             _ = self.modes  # errors that only the modes reveal are raised here
         if self.rigid_modes:
             check_free(self, self.modes)
+        if self.reduce is not None:
+            refuse_phases(self, "reduce a structure")
 
     def _filled(self) -> Mapping[str, object]:
         one = (1.0,) if self.matrices is None and self.n == 1 else None
@@ -782,6 +786,8 @@ class System(Shown):
     @cached_property
     def _description(self) -> str:
         contacts = describe_contacts(self.contact_system, self.dofs)
+        if self.springs is not None:
+            contacts = f"{contacts}; {describe_springs(self.springs, self.dofs)}"  # type: ignore[arg-type]
         words = (contacts, self._describe_load(), self._describe_damping())
         if self.n == 1 and self.matrices is None:
             spring = " without a spring" * self.rigid_modes

@@ -1,7 +1,7 @@
 """The engine of a system."""
 
 from ..errors import InputError
-from ..model.general import refuse_law
+from ..model.general import refuse_law, refuse_phases
 from ..model.system import System
 from .interface import Engine
 
@@ -28,6 +28,12 @@ def engine_of(system: System) -> Engine:
         )
     if system.contact_system.has_law and system.rigid_modes:
         refuse_law(system, "compute steady states of a free structure")
+    if system.contact_system.has_phases:
+        from .phases import PhasesEngine
+
+        if system.rigid_modes:
+            refuse_phases(system, "compute steady states of a free structure")
+        return PhasesEngine(system)
     if has_closed_forms(system):
         from .single import SingleEngine
 

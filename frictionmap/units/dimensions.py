@@ -13,6 +13,7 @@ from .. import checks
 from ..errors import InputError
 from ..model.contact import CONTACTS, WALLS, without_wall
 from ..model.general import ACCELERATION
+from ..model.spring_element import Spring
 from ..model.system import System
 from .axes import grid_ratios, has_units, needs
 from .quantities import EXAMPLES, Quantity, is_foreign, quantities, quantity
@@ -46,6 +47,15 @@ DIMENSIONS = {
     "contacts[].wall_velocity": "velocity",
     "contacts[].wall_speed": "velocity",
     "contacts[].law.speed": "velocity",
+    "contacts[].normal.stiffness": "stiffness",
+    "contacts[].normal.preload": "force",
+    "springs[].gap": "length",
+    "springs[].backlash": "length",
+    "springs[].stiffness": "stiffness",
+    "springs[].displacement": "length",
+    "springs[].force": "force",
+    "springs[].stiffness_below": "stiffness",
+    "springs[].stiffness_above": "stiffness",
 }
 
 #: Keys of [design] with a dimension; the limit of a transmitted force is a force.
@@ -104,8 +114,11 @@ def _changed(
             for part, one in value.items()
         }
     if isinstance(value, (list, tuple)):
-        places = [(one, key if kind_of(key, inside) else _within(key, k)) for k, one in enumerate(value, 1)]
-        first = int(key == "contacts")  # counted as in the messages of `System`
+        places = [
+            (one, _within(key, k) if isinstance(one, Mapping) or not kind_of(key, inside) else key)
+            for k, one in enumerate(value, 1)
+        ]
+        first = int(key in ("contacts", "springs"))  # counted as in the messages of `System`
         every = has_units(value)  # then all of them must have one
         return [
             _changed(one, own, f"{name}[{k}]", change, inside, every)
@@ -210,6 +223,23 @@ def _ratio(value: Any, place: _Place, scales: Scales) -> Any:
     return rounded(quantity(value, place.name, place.kind).value / one)
 
 
+def is_of_elements(springs: Any) -> bool:
+    """Whether the key `springs` has piecewise linear springs, which are tables, and not those of a chain."""
+    listed = isinstance(springs, (list, tuple)) and len(springs) > 0
+    return listed and all(isinstance(one, (Mapping, Spring)) for one in springs)
+
+
+def _refuse_elements(springs: Sequence[Any], name: str) -> None:
+    """Refuse tables among the springs of a chain."""
+    for one in springs:
+        if isinstance(one, (Mapping, Spring)):
+            raise InputError(
+                name,
+                "must be stiffnesses of a chain or tables of piecewise linear springs, not both; got "
+                f"{checks.one_line(springs)}; give the chain by stiffness_ratios and units.stiffness",
+            )
+
+
 def chain_in_ratios(
     table: Mapping[str, Any], units: Mapping[str, Any], name: str = ""
 ) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -218,7 +248,10 @@ def chain_in_ratios(
     table : keys of [system]; units : keys of `Units`; name : of the table, for messages
     """
     changed, completed = dict(table), dict(units)
-    given = [own for own in RATIOS if own in table]
+    springs = table.get("springs")
+    if isinstance(springs, (list, tuple)) and not is_of_elements(springs):
+        _refuse_elements(springs, f"{name}.springs".lstrip("."))
+    given = [own for own in RATIOS if own in table and not is_of_elements(table[own])]
     for own in given:
         where, key = f"{name}.{own}".lstrip("."), RATIOS[own]
         if key in table:

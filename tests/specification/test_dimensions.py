@@ -64,6 +64,37 @@ IN_TABLES = {
     "contacts[].wall_speed": (
         'contacts = [{ wall_speed = "200 mm/s" }]\n' + UNITS, lambda s: s.contacts[0].wall_speed,
         0.2 * 500e3 / (100 * OMEGA)),
+    "contacts[].normal.stiffness": (
+        'contacts = [{ normal = { mass = 1, stiffness = "1 kN/mm", friction = 0.3 } }]\n' + UNITS,
+        lambda s: s.contacts[0].normal.stiffness, 2.0),
+    "contacts[].normal.preload": (
+        'contacts = [{ normal = { mass = 1, stiffness = 2, friction = 0.3, preload = "-50 N" } }]\n' + UNITS,
+        lambda s: s.contact_system.groups[0].normal.preload, -0.5),
+    "springs[].gap": (
+        'springs = [{ gap = "0.1 mm", stiffness = 2.0 }]\n' + UNITS,
+        lambda s: s.spring_elements[0].displacement[0], 0.5),
+    "springs[].backlash": (
+        'springs = [{ backlash = "0.1 mm", stiffness = 2.0 }]\n' + UNITS,
+        lambda s: list(s.spring_elements[0].displacement), [-0.5, 0.5]),
+    "springs[].stiffness": (
+        'springs = [{ gap = 0.5, stiffness = "1 kN/mm" }]\n' + UNITS,
+        lambda s: s.spring_elements[0].stiffness_above, 2.0),
+    "springs[].displacement": (
+        'springs = [{ displacement = ["-0.1 mm", "0 mm"], force = [0.0, 1.0], stiffness_below = 1.0, '
+        'stiffness_above = 2.0 }]\n' + UNITS,
+        lambda s: list(s.spring_elements[0].displacement), [-0.5, 0.0]),
+    "springs[].force": (
+        'springs = [{ displacement = [-0.5, 0.0], force = ["-0.1 kN", "0 N"], stiffness_below = 1.0, '
+        'stiffness_above = 2.0 }]\n' + UNITS,
+        lambda s: list(s.spring_elements[0].force), [-1.0, 0.0]),
+    "springs[].stiffness_below": (
+        'springs = [{ displacement = [0.0], force = [0.0], stiffness_below = "1 kN/mm", '
+        'stiffness_above = 2.0 }]\n' + UNITS,
+        lambda s: s.spring_elements[0].stiffness_below, 2.0),
+    "springs[].stiffness_above": (
+        'springs = [{ displacement = [0.0], force = [0.0], stiffness_below = 1.0, '
+        'stiffness_above = "250 N/mm" }]\n' + UNITS,
+        lambda s: s.spring_elements[0].stiffness_above, 0.5),
     "contacts[].stiffness": (
         'contacts = [{ stiffness = "1 kN/mm" }]\n' + UNITS, lambda s: s.contacts[0].stiffness, 2.0),
 }  # fmt: skip
@@ -122,6 +153,8 @@ DIMENSIONLESS = {
         "count", "coupling[].masses[]", "engine_order", "spread.standard_deviation", "spread.seed",
         "mass_factors[]", "stiffness_factors[]",
     )),
+    *(f"system.contacts[].normal.{name}" for name in ("mass", "masses[]", "vector[]", "friction")),
+    "system.springs[].masses", "system.springs[].masses[]",
     "grid.mu", "grid.friction_coefficient",
     "solver.cycles", "solver.tolerance", "solver.steps", "curves.harmonics",
     "design.mu", "design.second", "design.ratio[]", "design.spread", "design.quantile",

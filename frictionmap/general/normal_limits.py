@@ -1,0 +1,92 @@
+"""Boundaries of a system with one contact whose normal force moves with the structure, in closed form.
+
+They hold for any friction at preload, because the phasors of the held structure do not depend on it.
+"""
+
+import numpy as np
+import xarray as xr
+
+from .. import regimes
+from ..datasets.labels import LABELS
+from ..datasets.variables import coordinate, label_variable
+from ..model.general import MergedContact
+from ..model.normal_contact import MovingNormal
+from ..model.system import System
+from .held import linear_parts, orders_of
+from .normal_force import NormalSpring, Structure, locks_itself, no_slip_preload, sliding_limit
+from .problem import general_of
+
+#: Kinds of `friction_lim` by what `normal_force.Limit` names them.
+_KINDS = {"": regimes.NO_LIMIT, "flutter": regimes.FLUTTER, "divergence": regimes.DIVERGENCE}
+
+
+def _parts(system: System) -> tuple[Structure, MergedContact, MovingNormal, NormalSpring] | None:
+    """The structure and its contact; None where these closed forms do not hold.
+
+    They are for one contact, with a wall that does not move with the base, and without other springs.
+    """
+    general = general_of(system)
+    group = general.groups[0]
+    if general.count > 1 or general.springs or group.normal is None or group.base:
+        return None
+    modes, normal = system.modes, group.normal
+    structure = Structure(modes.mass, modes.damping, modes.stiffness)
+    return structure, group, normal, NormalSpring(group.vector, normal.direction, normal.stiffness)
+
+
+def no_slip_friction(system: System, r: np.ndarray, mu: np.ndarray) -> np.ndarray:
+    """Friction at preload, phi N0, from which the contact can rest for good, (n_mu, n_r); 0 if it locks
+    itself, NaN where no closed form holds.
+
+    A contact on a belt cannot rest.
+    """
+    parts = _parts(system)
+    found = np.full((mu.size, r.size), np.nan)
+    if parts is None or parts[1].first.belt:
+        return found
+    structure, group, normal, contact = parts
+    loads = {n: linear_parts(system, structure.stiffness, n, r)[1] for n in orders_of(general_of(system))}
+    for m, one in enumerate(mu):
+        phi = normal.friction * float(group.first.static_ratio(one))
+        for i, ratio in enumerate(r):
+            load = {n: vectors[i] for n, vectors in loads.items()}
+            preload = no_slip_preload(structure, contact, phi, float(ratio), load, group.stiffness)
+            found[m, i] = normal.friction * max(0.0, preload)
+    return found
+
+
+def _resting_variable(system: System, r: np.ndarray, mu: np.ndarray) -> dict[str, xr.Variable]:
+    """The boundary to a contact at rest for good: beta_noslip of an elastic one, else beta_stick."""
+    found = no_slip_friction(system, r, mu)
+    if np.isnan(found).any():
+        return {}
+    if general_of(system).elastic.any():
+        return {"beta_noslip": label_variable("beta_noslip", found[0])}
+    return {"beta_stick": label_variable("beta_stick", found)}
+
+
+def _contact_variables(system: System, mu: np.ndarray) -> dict[str, xr.Variable]:
+    """Whether the contact locks itself, and on a belt the friction from which steady sliding is unstable."""
+    parts = _parts(system)
+    if parts is None:
+        return {}
+    structure, group, normal, contact = parts
+    locks = [locks_itself(structure, contact, normal.friction * group.first.static_ratio(one)) for one in mu]
+    found: dict[str, np.ndarray] = {"self_locking": np.array(locks, dtype=LABELS["self_locking"].dtype)}
+    if group.first.belt:
+        limit = sliding_limit(structure, contact, -1 if group.first.belt > 0.0 else 1)
+        found["friction_lim"] = np.array(limit.phi)
+        found["friction_lim_kind"] = np.array(_KINDS[limit.kind], dtype=np.int8)
+    return {name: label_variable(name, values) for name, values in found.items()}
+
+
+def limit_variables(system: System, r: np.ndarray, mu: np.ndarray) -> dict[str, xr.Variable]:
+    """The boundaries that a system has, labelled."""
+    return _resting_variable(system, r, mu) | _contact_variables(system, mu)
+
+
+def normal_boundaries(system: System, r: np.ndarray, mu: np.ndarray) -> xr.Dataset:
+    """Boundaries of a system with a normal force that moves with the structure, or with springs."""
+    axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
+    coords = {name: coordinate(name, axis) for name, axis in axes.items()}
+    return xr.Dataset(limit_variables(system, r, mu), coords=coords)

@@ -1,0 +1,113 @@
+"""The engine of contacts that open and of piecewise linear springs: the stiffness changes with the motion."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NoReturn
+
+import numpy as np
+
+from ..jobs import Progress, Watch
+from ..model.general import refuse_phases
+from ..model.settings import CurveSettings, Solver
+from ..model.sizes import Sizes, Wanted
+from .interface import Engine, Limits
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..single.points import States
+
+
+class PhasesEngine(Engine):
+    """Contacts that open, and piecewise linear springs.
+
+    What is not offered for them is refused here, and by `refuse_phases` where no engine is asked.
+    """
+
+    has_closed_limits = False
+    intervals = 1
+    states_status = True
+    compares_starts = False
+    order_step = 1
+
+    @property
+    def kernels(self) -> str:
+        return "phases"
+
+    @property
+    def least_ratio(self) -> float:
+        return 0.0
+
+    @property
+    def least_stick_ratio(self) -> float:
+        return 0.0
+
+    def check_static(self, mu: np.ndarray) -> None:
+        from ..general.dataset import refuse_static
+
+        refuse_static(self.system.contact_system, mu)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return ()
+
+    @property
+    def bytes_per_cell(self) -> float:
+        return 0.0
+
+    def _refuse(self, what: str) -> NoReturn:
+        refuse_phases(self.system, what)
+        raise AssertionError  # every system of this engine is refused
+
+    def needed_friction(self, r: np.ndarray) -> np.ndarray:
+        self._refuse("answer design questions")
+
+    def no_stop_limit(self, r: np.ndarray, mu: float, watch: Watch | None) -> np.ndarray:
+        self._refuse("answer design questions")
+
+    def limits(self, r: np.ndarray, mu: np.ndarray, watch: Watch | None = None) -> Limits:
+        self._refuse("compute boundaries for this")
+
+    def boundaries(self, r: np.ndarray, mu: np.ndarray) -> "xr.Dataset":
+        from ..general.normal_limits import normal_boundaries
+
+        self.check_static(mu)
+        return normal_boundaries(self.system, r, mu)
+
+    def map(
+        self, axes: Mapping[str, np.ndarray], solver: Solver, threads: int | None, progress: Progress | None,
+        watch: Watch | None = None,
+    ) -> "xr.Dataset":  # fmt: skip
+        self._refuse("compute maps")
+
+    def cells(
+        self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
+        progress: Progress | None, watch: Watch | None,
+    ) -> tuple[dict[str, np.ndarray], Limits]:  # fmt: skip
+        self._refuse("answer design questions")
+
+    def curves(
+        self, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
+        progress: Progress | None, watch: Watch | None = None,
+    ) -> "xr.Dataset":  # fmt: skip
+        self._refuse("compute response curves")
+
+    def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
+        self._refuse("compute steady states in time")
+
+    @property
+    def sizes(self) -> tuple[str, ...]:
+        self._refuse("answer design questions")
+
+    def sizes_on_grid(
+        self, wanted: Wanted, axes: dict[str, np.ndarray], solver: Solver, threads: int, watch: Watch | None
+    ) -> Sizes:
+        self._refuse("answer design questions")
+
+    def sizes_at(
+        self, wanted: Wanted, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver, threads: int,
+        watch: Watch | None,
+    ) -> Sizes:  # fmt: skip
+        self._refuse("answer design questions")
+
+    def states(self, r: np.ndarray, beta: np.ndarray, mu: float) -> "list[States]":
+        self._refuse("compute first harmonics at points")

@@ -1,4 +1,4 @@
-"""Matrices of structures: read from the files of finite-element programs, and reduced.
+"""Matrices and modes of structures: from files of finite-element programs, reduced; beams and plates.
 
 ==============  ===================================================
 module          what is in it
@@ -15,5 +15,9 @@ structure       checked matrices
 craig_bampton   reduction to a few degrees of freedom
 accuracy        error of a reduction
 reduction       reduction, checked against the allowed error
+modes           modes at named points, checked
+beam            bending of uniform beams: modes, compliance
+plate           bending of rectangular plates: modes, compliance
+uniform         beams and plates with their dimensions
 ==============  ===================================================
 """

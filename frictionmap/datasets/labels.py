@@ -76,6 +76,7 @@ COORDINATES = {
     "harmonic": Label(
         np.int64, "harmonic of the excitation frequency; 0 is the mean", ("harmonic",), least=0
     ),
+    "segment": Label(np.int64, "segment of the friction over the speed", ("segment",), least=1),
     "part": Label(np.str_, "part of a complex number", ("part",), texts=("real", "imaginary")),
     "outcome": Label(
         np.str_, "regime", ("outcome",), texts=tuple(code.name for code in regimes.BELT_REGIMES)
@@ -270,6 +271,11 @@ def _range_label(long_name: str, *further: str, comment: str = "", least: float 
     return Label(np.float64, long_name, (*CELL, *further), comment=comment, least=least, nan=True, inf=True)
 
 
+_UNIQUE = (
+    regimes.Code(0, "not_proved", "another start may lead to another steady state"),
+    regimes.Code(1, "proved", "every start leads to the same motion; contacts at rest may have other places"),
+)
+
 _RELEASE_ORDERS = (
     regimes.Code(regimes.UNRESOLVED, "unresolved", "no steady state found; see status"),
     regimes.Code(0, "same", "no event leads to another pattern if all overloaded contacts let go at once"),
@@ -371,6 +377,23 @@ GENERAL_VARIABLES = {
         "mean velocity in the contact, of a structure that no spring holds at a place",
         comment="dz/dtau over P/k1 (Y): at one that is not 0 the structure drifts, and amplitudes are NaN",
     ),
+    "segment_fraction": Label(
+        np.float32,
+        "share of the steady period in which a contact slides at the speeds of each segment of its friction",
+        (*CELL, "segment"),
+        comment="NaN where unresolved, and beyond the last segment",
+        least=0.0,
+        most=1.0,
+        nan=True,
+    ),
+    "unique": Label(
+        np.int8,
+        "whether it is proved that every start leads to this steady state: mu = 1, and damping outweighs "
+        "the fall of the friction with the speed",
+        CELL,
+        _UNIQUE,
+        unresolved=0,
+    ),
     "release_order": Label(
         np.int8,
         "whether the pattern after some event of the steady state depends on the order in which contacts "
@@ -383,7 +406,7 @@ GENERAL_VARIABLES = {
 
 #: Of these, the ones that are not of single contacts.
 _OF_ALL_CONTACTS = (
-    "peak_to_peak", "midpoint", "release_order", "drift", "acceleration_amplitude", "base_force",
+    "peak_to_peak", "midpoint", "release_order", "drift", "acceleration_amplitude", "base_force", "unique",
 )  # fmt: skip
 
 #: Variables of all maps that have one value per contact where there are several.

@@ -3,6 +3,7 @@
 ===============  ================================================================================
 module           what is in it
 ===============  ================================================================================
+certificate      friction over speed up to which there is one steady state
 problem          a system over r as arrays for the kernels
 observed         masses, drifts of storeys, accelerations, and the force on the base
 held             forces in contacts that do not slide, and the boundaries that follow from them

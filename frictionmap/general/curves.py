@@ -13,6 +13,7 @@ from ..jobs import Progress
 from ..model.settings import RECORDED, CurveSettings, Solver
 from ..model.system import System
 from .boundaries import find_boundaries, stays_at_rest
+from .certificate import certified_beta
 from .cycle import equivalent, first_harmonics, harmonic_values, parts, phase_values, work_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
 from .held import held_forces, held_ranges
@@ -115,14 +116,15 @@ def general_curves(
     limits = find_boundaries(system, r, mu)
     problem, modal = problem_of(system, r, float(beta.max()))
     from_rest = stays_at_rest(system, solver.start)
-    proved = [from_rest or (general.has_equal_friction(float(one)) and not general.has_law) for one in mu]
+    equal, certified = [general.has_equal_friction(float(one)) for one in mu], certified_beta(system)
     further = wants_further(system, asked.quantities)
     shape = (mu.size, r.size, beta.size)
     tables: dict[str, np.ndarray] = {}
     for done, (m, i, b) in enumerate(np.ndindex(shape), 1):
         values: dict[str, np.ndarray] = {"status": np.array(regimes.NOT_REACHED)}
         try:
-            if proved[m] and solver.skip == "exact" and beta[b] >= limits.beta_stick[m, i]:
+            proved = from_rest or (equal[m] and beta[b] <= certified)
+            if proved and solver.skip == "exact" and beta[b] >= limits.beta_stick[m, i]:
                 values = _stuck(system, asked, float(r[i]))
             else:
                 steps = cell_steps(system, problem, modal, i, float(beta[b]), float(mu[m]), solver, further)

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
-from ..datasets.labels import LABELS, PER_CONTACT, attributes
+from ..datasets.labels import LABELS, PER_CONTACT, attributes, with_contact
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError
 from ..jobs import Progress, Watch
@@ -43,11 +43,10 @@ def outputs_of(general: ContactSystem, solver: Solver) -> tuple[str, ...]:
 
 
 def contact_variable(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
-    """Label a variable with one value per contact: the last dimension, which one contact does without."""
-    label = LABELS[name]
-    if contacts == 1:
-        return label_variable(name, np.ascontiguousarray(values[..., 0]))
-    return xr.Variable((*label.dims, "contact"), values, label_variable(name, values[..., 0]).attrs)
+    """Label a variable with one value per contact, a dimension that one contact does without."""
+    dims = with_contact(LABELS[name].dims)
+    one = label_variable(name, np.ascontiguousarray(values.take(0, dims.index("contact"))))
+    return one if contacts == 1 else xr.Variable(dims, values, one.attrs)
 
 
 def boundary_variables(system: System, limits: Boundaries) -> dict[str, xr.Variable]:
@@ -76,6 +75,11 @@ def boundary_variables(system: System, limits: Boundaries) -> dict[str, xr.Varia
             "beta_stick_contact", limits.beta_stick_contact, count
         )
     return variables
+
+
+def segments_of(general: ContactSystem) -> np.ndarray:
+    """Numbers of the segments of friction laws, counted from 1."""
+    return np.arange(1, 1 + max(len(group.first.law.speed) for group in general.groups if group.first.law))
 
 
 def contact_coordinates(system: System) -> dict[str, xr.Variable]:
@@ -129,6 +133,8 @@ def general_map(
     coords = {name: coordinate(name, values) for name, values in axes.items()}
     if any(is_of_masses(name) for name in names):
         coords["dof"] = coordinate("dof", np.array(system.dofs.numbers))
+    if "segment_fraction" in found:
+        coords["segment"] = coordinate("segment", segments_of(general))
     return xr.Dataset(
         variables | boundary_variables(system, limits), coords=coords | contact_coordinates(system)
     )

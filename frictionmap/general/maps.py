@@ -10,6 +10,7 @@ from ..jobs import Job, Progress, Watch, run_counted
 from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines, stays_at_rest
+from .certificate import certified_beta
 from .held import held_ranges
 from .observed import observed_rows
 from .outputs import allocate
@@ -66,7 +67,9 @@ def solve_cells(
     problem, modal = problem_of(system, r, float(beta.max()))
     general = general_of(system)
     kinetic, static = friction_lines(system, mu)
-    unique = (static == kinetic).all(axis=(1, 2)) & (not general.has_law)
+    equal = (static == kinetic).all(axis=(1, 2))
+    sure = equal[:, np.newaxis, np.newaxis] & (beta <= certified_beta(system))
+    unique = sure.all(axis=(1, 2))
     proved = (unique | stays_at_rest(system, solver.start)) & (solver.skip == "exact")
     sticks_from = [np.searchsorted(beta[i], beta_stick[:, i]) for i in range(r.size)]
     stuck_from = np.where(proved[:, np.newaxis], np.stack(sticks_from, axis=1), many)
@@ -76,7 +79,8 @@ def solve_cells(
     outputs = np.empty((0, modal.phi.shape[1]))
     if masses or further:
         outputs = observed_rows(system, modal, further)
-    found = allocate((mu.size, r.size, many), general.count, len(outputs))
+    found = allocate((mu.size, r.size, many), general.count, len(outputs), problem.law.speed.shape[1])
+    found.unique[:] = sure
     cancel = np.zeros(1, np.uint8)
     rows = range(0, mu.size * r.size, max(1, _IN_A_JOB // max(many, 1)))
     jobs: list[Job] = [

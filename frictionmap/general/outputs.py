@@ -91,6 +91,15 @@ def _several(general: ContactSystem) -> bool:
     return general.count > 1
 
 
+def _laws(general: ContactSystem) -> bool:
+    return general.has_law
+
+
+def _shares_of_segments(solved: Solved) -> np.ndarray:
+    """Shares of the period in the segments of the friction laws, (..., N, S); NaN where a law has fewer."""
+    return np.moveaxis(solved.cells.numbers[len(NUMBERS) :], 0, -1)
+
+
 def _belts(general: ContactSystem) -> bool:
     return any(group.first.belt for group in general.groups)
 
@@ -131,9 +140,9 @@ TABLE = {
         free=True,
     ),
     "release_order": Output(_cell("release_order"), wanted=_several),
-    "segment_crossings": Output(
-        _number("crossings"), (RIGID,), moving=True, wanted=lambda general: general.has_law
-    ),
+    "segment_crossings": Output(_number("crossings"), (RIGID,), moving=True, wanted=_laws),
+    "segment_fraction": Output(_shares_of_segments, wanted=_laws),
+    "unique": Output(_cell("unique"), wanted=_laws),
 }
 
 #: Outputs of elastic contacts that take the place of those of rigid ones.
@@ -221,14 +230,14 @@ def about_middle(system: System, cells: Cells) -> tuple[np.ndarray, np.ndarray]:
     return low, high
 
 
-def allocate(shape: tuple[int, int, int], contacts: int, masses: int) -> Cells:
-    """Allocate unresolved cells."""
+def allocate(shape: tuple[int, int, int], contacts: int, masses: int, segments: int = 0) -> Cells:
+    """Allocate unresolved cells; `segments` of friction laws at most."""
 
     def unresolved(name: str, *further: int) -> np.ndarray:
         return np.full((*shape, *further), LABELS[name].unresolved, LABELS[name].dtype)
 
     values = {name: unresolved(name) for name in Cells._fields if name in LABELS and name not in PER_CONTACT}
     values["contact_regime"] = unresolved("contact_regime", contacts)
-    values["numbers"] = np.full((len(NUMBERS), *shape, contacts), np.nan)
+    values["numbers"] = np.full((len(NUMBERS) + segments, *shape, contacts), np.nan)
     values["lowest"], values["highest"] = (np.full((*shape, contacts + masses), np.nan) for _ in range(2))
     return Cells(**values)

@@ -9,6 +9,7 @@ from ..errors import InputError
 from ..model.friction_law import FrictionLaw
 from ..model.general import LOOP, ContactSystem, refuse_law
 from ..model.system import System
+from .certificate import certified_friction
 
 #: Largest rate of the fastest part of the motion, in tau.
 _HIGHEST_RATE = 1e4
@@ -94,6 +95,12 @@ def _phasors(channels: list[Channel], orders: tuple[int, ...], r: np.ndarray) ->
     return np.ascontiguousarray(np.stack((table.real, -table.imag), axis=1))
 
 
+def _norms(modal: ModalSystem, spring: np.ndarray) -> tuple[float, float]:
+    """Norms of the modal matrices, of damping and of stiffness with all springs."""
+    stiffness = np.diag(modal.squares) + modal.chi.T @ (spring[:, np.newaxis] * modal.chi)
+    return float(np.linalg.norm(modal.damping, 2)), float(np.linalg.eigvalsh(stiffness)[-1])
+
+
 def fastest(modal: ModalSystem, spring: np.ndarray, damping: np.ndarray | None = None) -> float:
     """Bound on the rate of the fastest part of the motion, in t = tau/r.
 
@@ -102,11 +109,9 @@ def fastest(modal: ModalSystem, spring: np.ndarray, damping: np.ndarray | None =
 
     damping : (N,) moduli of the derivatives of friction forces by velocities
     """
-    stiffness = np.diag(modal.squares) + modal.chi.T @ (spring[:, np.newaxis] * modal.chi)
-    k = float(np.linalg.eigvalsh(stiffness)[-1])
-    c = float(np.linalg.norm(modal.damping, 2))
-    if damping is not None and damping.any():
-        c += float(np.linalg.norm(modal.chi.T @ (damping[:, np.newaxis] * modal.chi), 2))
+    c, k = _norms(modal, spring)
+    if damping is not None:
+        c += float(damping @ (modal.chi**2).sum(axis=1))
     return 0.5 * (c + np.sqrt(c * c + 4.0 * k))
 
 
@@ -195,8 +200,9 @@ def ties(vectors: np.ndarray, moved: np.ndarray, belt: np.ndarray, spring: np.nd
     return found
 
 
-def law_of(general: ContactSystem) -> Law:
+def law_of(system: System, modal: ModalSystem) -> Law:
     """Friction over the speed of every contact, as arrays; see `_kernels.general.problem`."""
+    general = general_of(system)
     if not general.has_law:
         return FLAT
     laws = [group.first.law or FrictionLaw() for group in general.groups]
@@ -204,7 +210,9 @@ def law_of(general: ContactSystem) -> Law:
     speed, factor, slope = (np.zeros((count.size, count.max())) for _ in range(3))
     for j, law in enumerate(laws):
         speed[j, : count[j]], factor[j, : count[j]], slope[j, : count[j]] = law.speed, law.factor, law.slopes
-    return Law(speed, factor - slope * speed, slope, count)
+    steepest = np.abs(slope).max(axis=1) * (modal.chi**2).sum(axis=1)
+    norms = np.array(_norms(modal, springs(general)))
+    return Law(speed, factor - slope * speed, slope, count, certified_friction(system), steepest, norms)
 
 
 def law_damping(general: ContactSystem, beta: float) -> np.ndarray:
@@ -238,14 +246,12 @@ def problem_of(system: System, r: np.ndarray, beta: float | None = None) -> tupl
     tied = ties(general.vectors, moved, belt, spring)
     # a slider under a varying normal load slips between ends at rest, too: it is watched there
     tied[[bool(group.first.nu) for group in general.groups]] = False
-    # with a law the motion itself decides where contacts come to rest: half a period would mirror the place
-    mirrored = is_symmetric(general) and not general.has_law
     problem = Problem(
         modal.squares, modal.damping, bool((modal.damping != np.diag(np.diag(modal.damping))).any()),
         np.ascontiguousarray(modal.chi), np.ascontiguousarray(push),
         np.ascontiguousarray(np.array([channel.base for channel in channels]).T),
         np.ascontiguousarray(np.array([channel.normal for channel in channels]).T),
         spring, belt, tied, np.array(orders, dtype=float), r, phasors,
-        rates, np.where(sizes > 0.0, sizes, 1.0), mirrored, law_of(general),
+        rates, np.where(sizes > 0.0, sizes, 1.0), is_symmetric(general), law_of(system, modal),
     )  # fmt: skip
     return problem, modal

@@ -15,7 +15,7 @@ from ..model.settings import HARMONICS, RECORDED, Solver
 from ..model.system import System
 from .boundaries import find_boundaries
 from .cycle import cycle_values
-from .dataset import boundary_variables, contact_coordinates, refuse_static
+from .dataset import boundary_variables, contact_coordinates, refuse_static, segments_of
 from .observed import wants_further
 from .outputs import TABLE, is_wanted, output_values
 from .problem import general_of, static_offset
@@ -144,6 +144,8 @@ def general_response(
         "beta": beta,
         "mu": mu,
     }
+    if general.has_law:
+        own["segment"] = segments_of(general)
     coords = {name: coordinate(name, values) for name, values in own.items()}
     ds = xr.Dataset(variables, coords=coords | contact_coordinates(system))
     if not steps.period:

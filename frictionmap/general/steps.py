@@ -22,6 +22,7 @@ from ..errors import NoSteadyState
 from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines, stays_at_rest
+from .certificate import certified_beta
 from .held import least_static_friction
 from .maps import put_offset
 from .observed import observed_rows
@@ -125,7 +126,7 @@ def _rests(system: System, problem: Problem, i: int, friction: Friction) -> bool
 def _cells(system: System, problem: Problem, counts: np.ndarray, halves: int, record: Record) -> Cells:
     """Store what was measured over some half periods, as a map does it."""
     general = general_of(system)
-    cells = allocate((1, 1, 1), general.count, len(record.masses))
+    cells = allocate((1, 1, 1), general.count, len(record.masses), problem.law.speed.shape[1])
     store_motion(problem, cells, counts, halves, record)
     put_offset(system, cells)
     put_still(general, cells.contact_regime, cells.lowest, cells.highest)
@@ -174,7 +175,8 @@ def cell_steps(
     friction = Friction(kinetic @ np.array([beta, 1.0]), static[0] @ np.array([beta, 1.0]))
     start = initial_states(system, problem, modal, solver.start)[i]
     rows = observed_rows(system, modal, further)
-    unique = bool((friction.static == friction.kinetic).all()) and not problem.law.speed.size
+    equal = bool((friction.static == friction.kinetic).all())
+    unique = equal and beta <= certified_beta(system)
     from_rest = stays_at_rest(system, solver.start)
     rests = (unique or from_rest) and _rests(system, problem, i, friction)
     limits = friction
@@ -203,6 +205,7 @@ def cell_steps(
         _centre(problem, series, lengths[own], h)
     cells = _cells(system, problem, counts, 2 * averaged, record)
     cells.status[:] = regimes.RESOLVED if period else regimes.IRREGULAR
+    cells.unique[:] = unique
     cells.origin[:] = regimes.PERIODIC_ORBIT if period else regimes.INTEGRATED
     cells.period[:], cells.multiplier[:], cells.cycles[:] = period, multiplier, np.ceil(found.cycles)
     return Steps(

@@ -62,6 +62,8 @@ GeneralOutput = Literal[
     "mean_velocity",
     "release_order",
     "segment_crossings",
+    "segment_fraction",
+    "unique",
 ]
 GENERAL_OUTPUTS: tuple[str, ...] = get_args(GeneralOutput)
 

@@ -7,4 +7,4 @@ FIRST_SENSE = 8  # of the slips of an elastic contact; 0 before the first
 RELEASE_ORDER = 9  # 1 where releasing all overloaded contacts at once would leave it in another state
 STOPS_ERROR, STUCK_ERROR = 10, 11  # standard errors per period of the load, of averages; else 0
 CROSSINGS = 12  # of break points of a friction law
-COUNT_ROWS = 13
+COUNT_ROWS = 13  # after them the time in every segment of a friction law

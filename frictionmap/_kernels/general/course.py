@@ -9,6 +9,7 @@ from ..compiler import entry, kernel
 from ..logs import CAPACITY, LENGTH, USED, clear_log, is_stationary, make_log, mean_stops, mean_stuck, opened
 from .counts import (
     COUNT_ROWS,
+    CROSSINGS,
     FIRST_SENSE,
     LAST_SENSE,
     MOVED,
@@ -22,18 +23,20 @@ from .counts import (
     TURNS,
 )
 from .follow import FOLLOWED, follow
+from .laws.speed import count_rows
 from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES, begin_cycle, clear_record
 from .recurrence import keep
-from .return_map import forget_places, put_state, take_state
+from .return_map import base_halves, forget_places, put_state, take_state
 
 #: Columns of the log, each for all contacts: numbers that are added over the time ...
 _STOPS, _TURNS, _STUCK, _SLIPS, _REVERSALS, _DISTANCE, _WORK, _WALL_WORK = 0, 1, 2, 3, 4, 5, 6, 7
-_SUMS = 8
+_CROSSINGS = 8
+_SUMS = 9  # after them the time in every segment of a friction law
 
-#: ... and those of which the largest counts; after them the highest displacements of contacts and masses, and
-#: minus the lowest ones.
-_MOVED, _RELEASE_ORDER, _MINUS_LEAST_SLIP, _LARGEST = 8, 9, 10, 11
-_PER_CONTACT = 12
+#: ... and, after all of them, those of which the largest counts; then the highest displacements of contacts
+#: and masses, and minus the lowest ones.
+_MOVED, _RELEASE_ORDER, _MINUS_LEAST_SLIP, _LARGEST = 0, 1, 2, 3
+_LARGEST_PER_CONTACT = 4
 
 
 class Course(NamedTuple):
@@ -49,10 +52,21 @@ class Course(NamedTuple):
 def make_course(problem, masses):
     """Allocate a log; `masses` (n, m): see `make_record`."""
     contacts = problem.spring.size
-    columns = _PER_CONTACT * contacts + 2 * (contacts + masses.shape[0])
-    return Course(
-        make_log(columns), np.zeros((COUNT_ROWS, contacts)), np.zeros(1, np.int64), np.zeros(2, np.int64)
-    )
+    counts = np.zeros((count_rows(problem), contacts))
+    columns = _sums(counts) + _LARGEST_PER_CONTACT * contacts + 2 * (contacts + masses.shape[0])
+    return Course(make_log(columns), counts, np.zeros(1, np.int64), np.zeros(2, np.int64))
+
+
+@kernel
+def _segments(counts):
+    """Segments of a friction law."""
+    return counts.shape[0] - COUNT_ROWS
+
+
+@kernel
+def _sums(counts):
+    """Columns of the log that are added over the time, and so the first of those whose largest counts."""
+    return (_SUMS + _segments(counts)) * counts.shape[1]
 
 
 @kernel
@@ -68,7 +82,7 @@ def begin_course(followed, memory, record, course):
 @kernel
 def _log_cycle(counts, record, log, slot):
     """Add the counters and the record of one cycle to a slot."""
-    contacts = counts.shape[1]
+    contacts, first = counts.shape[1], _sums(counts)
     for j in range(contacts):
         log[slot, _STOPS * contacts + j] += counts[STOPS, j]
         log[slot, _TURNS * contacts + j] += counts[TURNS, j]
@@ -78,15 +92,18 @@ def _log_cycle(counts, record, log, slot):
         log[slot, _DISTANCE * contacts + j] += record.distance[j]
         log[slot, _WORK * contacts + j] += record.works[OF_FRICTION, j]
         log[slot, _WALL_WORK * contacts + j] += record.works[OF_WALL, j]
-        _raise(log, slot, _MOVED * contacts + j, counts[MOVED, j])
-        _raise(log, slot, _RELEASE_ORDER * contacts + j, counts[RELEASE_ORDER, j])
-        _raise(log, slot, _MINUS_LEAST_SLIP * contacts + j, -record.slips[LEAST_SLIP, j])
+        log[slot, _CROSSINGS * contacts + j] += counts[CROSSINGS, j]
+        for k in range(_segments(counts)):
+            log[slot, (_SUMS + k) * contacts + j] += counts[COUNT_ROWS + k, j]
+        _raise(log, slot, first + _MOVED * contacts + j, counts[MOVED, j])
+        _raise(log, slot, first + _RELEASE_ORDER * contacts + j, counts[RELEASE_ORDER, j])
+        _raise(log, slot, first + _MINUS_LEAST_SLIP * contacts + j, -record.slips[LEAST_SLIP, j])
         largest = max(record.ranges[HIGH, j], -record.ranges[LOW, j])
-        _raise(log, slot, _LARGEST * contacts + j, largest)
-    places = record.ranges.shape[1]
+        _raise(log, slot, first + _LARGEST * contacts + j, largest)
+    places, first = record.ranges.shape[1], first + _LARGEST_PER_CONTACT * contacts
     for i in range(places):
-        _raise(log, slot, _PER_CONTACT * contacts + i, record.ranges[HIGH, i])
-        _raise(log, slot, _PER_CONTACT * contacts + places + i, -record.ranges[LOW, i])
+        _raise(log, slot, first + i, record.ranges[HIGH, i])
+        _raise(log, slot, first + places + i, -record.ranges[LOW, i])
 
 
 @kernel
@@ -115,7 +132,7 @@ def follow_cycle(problem, friction, followed, workspace):
     counts = course.counts
     put_state(memory.start, memory.senses, motion)
     begin_cycle(record)
-    for part in range(COUNT_ROWS):
+    for part in range(counts.shape[0]):
         if part != LAST_SENSE and part != FIRST_SENSE:
             for j in range(counts.shape[1]):
                 counts[part, j] = 0.0
@@ -128,13 +145,13 @@ def follow_cycle(problem, friction, followed, workspace):
                 take_state(motion, memory.start, memory.senses, 1.0)
                 forget_places(problem, memory.start)
                 keep(memory, ring)
-            elif problem.symmetric:  # the states of symmetric systems are kept with the sign of `go_round`
+            elif base_halves(problem) == 1:  # states are kept with the sign of `go_round`
                 take_state(motion, memory.start, memory.senses, -1.0)
                 forget_places(problem, memory.start)
                 keep(memory, ring)
     record.active[0] = NOTHING
     slot = int((followed - course.begun[0]) / course.log[CAPACITY, LENGTH])
-    slot = opened(course.log, slot, _SUMS * counts.shape[1], -math.inf)
+    slot = opened(course.log, slot, _sums(counts), -math.inf)
     _log_cycle(counts, record, course.log, slot)
     return code
 
@@ -180,9 +197,10 @@ def window_stops(course):
 def window_is_stationary(course):
     """Whether both halves of the window agree in every contact."""
     contacts = course.counts.shape[1]
+    largest = _sums(course.counts) + _LARGEST * contacts
     first, last = course.window[0], course.window[1]
     for j in range(contacts):
-        columns = (_STOPS * contacts + j, _STUCK * contacts + j, _LARGEST * contacts + j)
+        columns = (_STOPS * contacts + j, _STUCK * contacts + j, largest + j)
         if not is_stationary(course.log, columns, first, last):
             return False
     return True
@@ -191,7 +209,7 @@ def window_is_stationary(course):
 @kernel
 def take_window(course, counts, record):
     """Fill the counters and the record with those of the whole window; return its half periods."""
-    contacts = counts.shape[1]
+    contacts, most = counts.shape[1], _sums(counts)
     first, last = course.window[0], course.window[1]
     for j in range(contacts):
         stops, stuck = _STOPS * contacts + j, _STUCK * contacts + j
@@ -202,19 +220,22 @@ def take_window(course, counts, record):
         counts[STUCK_ERROR, j] = mean_stuck(course.log, stuck, first, last).error
         counts[SLIPS, j] = _total(course, _SLIPS * contacts + j)
         counts[REVERSALS, j] = _total(course, _REVERSALS * contacts + j)
-        counts[MOVED, j] = _most(course, _MOVED * contacts + j)
-        counts[RELEASE_ORDER, j] = _most(course, _RELEASE_ORDER * contacts + j)
+        counts[CROSSINGS, j] = _total(course, _CROSSINGS * contacts + j)
+        for k in range(_segments(counts)):
+            counts[COUNT_ROWS + k, j] = _total(course, (_SUMS + k) * contacts + j)
+        counts[MOVED, j] = _most(course, most + _MOVED * contacts + j)
+        counts[RELEASE_ORDER, j] = _most(course, most + _RELEASE_ORDER * contacts + j)
         record.distance[j] = _total(course, _DISTANCE * contacts + j)
         record.works[OF_FRICTION, j] = _total(course, _WORK * contacts + j)
         record.works[OF_WALL, j] = _total(course, _WALL_WORK * contacts + j)
     halves = int(2.0 * course.log[CAPACITY, LENGTH] * (last - first))
     for j in range(contacts):
-        least = -_most(course, _MINUS_LEAST_SLIP * contacts + j)
+        least = -_most(course, most + _MINUS_LEAST_SLIP * contacts + j)
         if least == math.inf:  # as in `join_slips`
             least = 2.0 * record.distance[j] / halves if counts[STUCK, j] == 0.0 else 0.0
         record.slips[LEAST_SLIP, j] = least
-    places = record.ranges.shape[1]
+    places, most = record.ranges.shape[1], most + _LARGEST_PER_CONTACT * contacts
     for i in range(places):
-        record.ranges[HIGH, i] = _most(course, _PER_CONTACT * contacts + i)
-        record.ranges[LOW, i] = -_most(course, _PER_CONTACT * contacts + places + i)
+        record.ranges[HIGH, i] = _most(course, most + i)
+        record.ranges[LOW, i] = -_most(course, most + places + i)
     return halves

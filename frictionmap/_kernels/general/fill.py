@@ -25,6 +25,7 @@ from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from ..extrapolation import CELLS, reaches, weight
 from .counts import (
+    COUNT_ROWS,
     CROSSINGS,
     MOVED,
     RELEASE_ORDER,
@@ -38,12 +39,13 @@ from .counts import (
 )
 from .laws.contact import regime_of
 from .laws.kinds import has_force
+from .laws.speed import has_law
 from .places import fill_needs, keep_held, place_after_start
 from .problem import padded, varies
 from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES
 from .return_map import copy_motion, copy_state, from_rest, steady_period
 from .series import Friction
-from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, is_unique, make_workspace, solve_from
+from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, fit_row, is_unique, make_workspace, solve_from
 
 #: A steady state with a larger multiplier may be one of a continuum: the result depends on the initial state.
 _ISOLATED = 1.0 - 1e-9
@@ -65,6 +67,7 @@ NUMBERS = (
     _STOPS, _TURNS, _STUCK, _SLIPS, _REVERSALS, _STOPS_ERROR, _STUCK_ERROR,
     _LEAST_SLIP, _DISTANCE, _WORK_FRICTION, _WORK_WALL, _DRIFT, _CROSSINGS,
 ) = range(len(NUMBERS))  # fmt: skip
+_SEGMENTS = len(NUMBERS)
 
 
 class Grid(NamedTuple):
@@ -99,8 +102,9 @@ class Cells(NamedTuple):
     period: np.ndarray
     multiplier: np.ndarray
     release_order: np.ndarray  # 1 where releasing contacts all at once would make a difference
+    unique: np.ndarray  # 1 where no other steady state can be
     contact_regime: np.ndarray  # (..., N)
-    numbers: np.ndarray  # (len(NUMBERS), ..., N)
+    numbers: np.ndarray  # (len(NUMBERS), ..., N), and a row for the share of time in every segment of a law
     lowest: np.ndarray  # (..., N + n)
     highest: np.ndarray
 
@@ -135,6 +139,8 @@ def _store_numbers(problem, numbers, m, i, b, counts, halves, record):
         numbers[_WORK_WALL, m, i, b, j] = record.works[OF_WALL, j] / period
         numbers[_DRIFT, m, i, b, j] = record.drift[j] / period
         numbers[_CROSSINGS, m, i, b, j] = counts[CROSSINGS, j] / period
+        for k in range(problem.law.count[j] if has_law(problem) and not has_force(problem, j) else 0):
+            numbers[_SEGMENTS + k, m, i, b, j] = counts[COUNT_ROWS + k, j] / (math.pi * halves)
 
 
 @kernel
@@ -205,7 +211,7 @@ def _store(problem, out, m, i, b, found, measured, counts, record):
 
 
 @kernel
-def _store_stuck(out, m, i, b):
+def _store_stuck(problem, out, m, i, b):
     """Store a cell that closed forms prove to stick permanently; its displacements beside those of the
     structure held at the place 0, which are added elsewhere, are 0.
     """
@@ -216,8 +222,10 @@ def _store_stuck(out, m, i, b):
     out.release_order[m, i, b] = 0
     for j in range(out.contact_regime.shape[3]):
         out.contact_regime[m, i, b, j] = PERMANENT_STICKING
-        for k in range(out.numbers.shape[0]):
+        for k in range(_SEGMENTS):
             out.numbers[k, m, i, b, j] = 1.0 if k == _STUCK else 0.0
+        for k in range(problem.law.count[j] if has_law(problem) and not has_force(problem, j) else 0):
+            out.numbers[_SEGMENTS + k, m, i, b, j] = 0.0
     for k in range(out.lowest.shape[3]):
         out.lowest[m, i, b, k] = out.highest[m, i, b, k] = 0.0
 
@@ -242,7 +250,8 @@ def _place_stuck(problem, grid, m, i, b, friction, workspace, place, out):
         return _STAYS
     state, needs = grid.starts[i], workspace.needs
     _set_friction(grid, m, i, b, friction)
-    changes = False  # whether a normal load varies: what is kept then depends on the friction
+    changes = fit_row(problem, i, friction, workspace)
+    # where a normal load varies, what is kept depends on the friction
     for j in range(needs.size):
         changes = changes or varies(problem, j)
     if place == _UNKNOWN or changes:
@@ -329,6 +338,8 @@ def _solve_cell(problem, grid, m, i, b, friction, workspace, trail):
     """
     state, row, memory = grid.starts[i], workspace.row, workspace.memory
     _set_friction(grid, m, i, b, friction)
+    if fit_row(problem, i, friction, workspace):
+        trail.count[0] = 0
     if trail.count[0] > 0 and is_unique(problem, friction):
         _begin_ahead(grid.beta[i, b], trail, memory)
         found, halves, multiplier = solve_from(
@@ -364,7 +375,7 @@ def _fill_rows(first, last, problem, grid, out, workspace, trail, friction, canc
             if cancel[0] != 0:
                 return
             if b >= grid.stuck_from[m, i]:
-                _store_stuck(out, m, i, b)
+                _store_stuck(problem, out, m, i, b)
                 place = _place_stuck(problem, grid, m, i, b, friction, workspace, place, out)
                 continue
             found, halves, multiplier = _solve_cell(problem, grid, m, i, b, friction, workspace, trail)

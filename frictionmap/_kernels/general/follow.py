@@ -3,7 +3,7 @@
 import math
 
 from ..compiler import inner_kernel, kernel
-from .counts import MOVED, RELEASE_ORDER, STUCK
+from .counts import COUNT_ROWS, MOVED, RELEASE_ORDER, STUCK
 from .crossings import NONE, value_at
 from .glide import can_glide, glide
 from .laws.contact import change_phase, count, jumps
@@ -100,6 +100,8 @@ def count_time(motion, counts, time):
         else:
             way = 1.0 if motion.sense[j] > 0 else 2.0
             counts[MOVED, j] = way if counts[MOVED, j] in (0.0, way) else 3.0
+            if counts.shape[0] > COUNT_ROWS:
+                counts[COUNT_ROWS + motion.segment[j], j] += time
 
 
 @kernel

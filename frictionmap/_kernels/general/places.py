@@ -17,6 +17,7 @@ from .counts import MOVED
 from .creep import WITHOUT_LIMIT, keep_friction, restore_friction
 from .follow import FOLLOWED
 from .laws.kinds import has_force, holding_stiffness
+from .laws.speed import has_law, steepest, velocity_unit
 from .orbits import NO_REPEAT, REPEATS, newton
 from .pattern import stop_exactly
 from .problem import SECTION, F, H, P, Q, R, padded, varies
@@ -177,7 +178,21 @@ def _fill_moved(problem, change, moved):
 
 
 @kernel
-def _gain(problem, row, motion, places, j):
+def _law_rate(problem, row, friction, places, m):
+    """Largest force that holds a contact, by velocities of mode m that change the friction of sliders."""
+    rate = 0.0
+    for i in range(friction.kinetic.size if has_law(problem) else 0):
+        if places.rests[i] == 0:
+            push = 0.0
+            for k in range(problem.push.shape[0]):
+                push += places.columns[k] * row.reaction[i, k]
+            damping = friction.kinetic[i] * steepest(problem, i) / velocity_unit(row)
+            rate += abs(push * problem.chi[i, m]) * damping
+    return rate
+
+
+@kernel
+def _gain(problem, row, friction, motion, places, j):
     """Largest force in contact j at rest, over the size of a difference of two motions; see `_difference`.
 
     The force that holds a rigid contact depends linearly on the displacements, the velocities and the forces
@@ -200,6 +215,7 @@ def _gain(problem, row, motion, places, j):
         rate = 0.0
         for other in range(modes):
             rate += places.columns[other] * row.damping[other, m]
+        rate = abs(rate) + _law_rate(problem, row, friction, places, m)
         square += rate * rate
     for other in range(contacts):
         if has_force(problem, other):
@@ -213,14 +229,14 @@ def _gain(problem, row, motion, places, j):
 
 
 @kernel
-def _fill_gains(problem, row, motion, places):
+def _fill_gains(problem, row, friction, motion, places):
     """Fill the gains, with the contacts at rest held and no others."""
     for j in range(places.rests.size):
         motion.sense[j] = 1 - places.rests[j]
     if not factor_held(problem, row, motion):
         return False
     for j in range(places.rests.size):
-        places.gains[j] = _gain(problem, row, motion, places, j) if places.rests[j] != 0 else 0.0
+        places.gains[j] = _gain(problem, row, friction, motion, places, j) if places.rests[j] != 0 else 0.0
     return True
 
 
@@ -237,7 +253,7 @@ def keep_orbit(problem, friction, halves, workspace):
     row, motion, memory = workspace.row, workspace.motion, workspace.memory
     record, places = workspace.record, workspace.places
     copy_motion(memory.start, memory.senses, places.orbit, places.senses)
-    if not _fill_gains(problem, row, motion, places):
+    if not _fill_gains(problem, row, friction, motion, places):
         return False
     keep_friction(friction, places.limits)
     contacts = places.rests.size

@@ -61,10 +61,16 @@ class Law(NamedTuple):
     constant: np.ndarray  # (N, S) friction of its line at speed 0, over that just above speed 0
     slope: np.ndarray  # (N, S)
     count: np.ndarray  # (N,) int: segments
+    certified: np.ndarray  # (N,) kinetic friction up to which, in all contacts, there is one steady state
+    steepest: np.ndarray  # (N,) damping of the modes by a contact per kinetic friction, at most
+    norms: np.ndarray  # (2,) of the modal matrices: damping and stiffness
 
 
 #: Friction that does not depend on the speed.
-FLAT = Law(np.zeros((0, 0)), np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0, np.int64))
+FLAT = Law(
+    np.zeros((0, 0)), np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0, np.int64), np.zeros(0), np.zeros(0),
+    np.zeros(2),
+)  # fmt: skip
 
 
 class Problem(NamedTuple):
@@ -132,6 +138,7 @@ class Row(NamedTuple):
     phasors: np.ndarray  # (2, D, H)
     loads: np.ndarray  # (2 K D, WIDTH) series of the channels in every interval; none where there are many
     patterns: np.ndarray  # (P,) int: pattern of every place in the tables below, plus 1; 0: none yet
+    segments: np.ndarray  # (P, N) int: the same contact by contact where friction has segments, see `tangent`
     columns: np.ndarray  # (P, LONG, m, S) series of the modes by the state; size = 2 m + N, or 2 m if rigid
     onward: np.ndarray  # (P, size, S) the state at the end of the interval by that at its beginning
     grips: np.ndarray  # (P, N, S) forces of rigid contacts that are held, by the state

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from ..long_periods import LONGEST_RECURRENCE, RETURNED_AFTER_LONG
-from .counts import COUNT_ROWS
+from .laws.speed import count_rows
 from .problem import SIZE, padded
 from .return_map import base_halves, copy_motion, largest_difference, steady_period
 
@@ -43,7 +43,7 @@ def make_ring(problem):
     return Ring(
         np.zeros((_KEPT, 3, width)), np.zeros((_KEPT, contacts), np.int64), np.zeros(1, np.int64),
         np.zeros((4, contacts)), np.zeros((3, width)), np.zeros(contacts, np.int64),
-        np.zeros((COUNT_ROWS, contacts)),
+        np.zeros((count_rows(problem), contacts)),
     )  # fmt: skip
 
 

@@ -6,9 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel
-from .counts import COUNT_ROWS, FIRST_SENSE, LAST_SENSE, MOVED, REVERSALS
+from .counts import FIRST_SENSE, LAST_SENSE, MOVED, REVERSALS
 from .follow import FOLLOWED, follow, follow_to_section
 from .laws.kinds import has_force, holding_stiffness, keeps_force, state_size
+from .laws.speed import count_rows, has_law
 from .pattern import BOX_ROWS, begin
 from .problem import SIZE, F, H, P, Q, is_rigid, moves_alone, padded
 from .record import NOTHING
@@ -49,7 +50,7 @@ def make_return(problem):
     return Return(
         np.zeros(shape), np.zeros(contacts, np.int64), np.zeros(shape), np.zeros(contacts, np.int64),
         np.zeros((size, size)), np.zeros(size), np.zeros((BOX_ROWS, contacts)),
-        np.zeros((COUNT_ROWS, contacts)), np.zeros(modes), np.zeros((modes + 1, contacts)),
+        np.zeros((count_rows(problem), contacts)), np.zeros(modes), np.zeros((modes + 1, contacts)),
     )  # fmt: skip
 
 
@@ -61,7 +62,17 @@ def steady_period(halves):
 
 @kernel
 def base_halves(problem):
-    """Half periods between returns to the section: one where half periods of the load mirror each other."""
+    """Half periods between returns to the section: one where half periods of the load mirror each other.
+
+    Where friction depends on the speed, and there may be several steady states, the motion itself decides
+    where contacts come to rest: half a period would mirror the place.
+    """
+    return 1 if problem.symmetric and not has_law(problem) else 2
+
+
+@kernel
+def unique_halves(problem):
+    """The same where there is one steady state: it is its own mirror image."""
     return 1 if problem.symmetric else 2
 
 
@@ -125,7 +136,7 @@ def go_round(problem, row, friction, halves, motion, memory, record, derive):
     int : code of `follow`
     """
     put_state(memory.start, memory.senses, motion)
-    for part in range(COUNT_ROWS):
+    for part in range(memory.counts.shape[0]):
         for j in range(motion.sense.size):
             memory.counts[part, j] = 0.0
     for j in range(motion.sense.size):

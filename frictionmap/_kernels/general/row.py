@@ -17,9 +17,9 @@ _KEPT_PATTERNS = 64
 
 
 @kernel
-def _intervals(problem, i):
-    """Intervals of half a period at r[i]."""
-    return int(math.ceil(math.pi * problem.rates[i] / TURN))
+def intervals_of(rate):
+    """Intervals of half a period for a rate of the fastest part of the motion."""
+    return int(math.ceil(math.pi * rate / TURN))
 
 
 @kernel
@@ -27,7 +27,7 @@ def most_intervals(problem, limit):
     """Largest number of intervals of a period over r, of those numbers that do not exceed a limit."""
     most = 0
     for i in range(problem.r.size):
-        count = 2 * _intervals(problem, i)
+        count = 2 * intervals_of(problem.rates[i])
         if count <= limit:
             most = max(most, count)
     return most
@@ -62,6 +62,7 @@ def make_row(problem):
         np.empty((contacts, contacts)), np.zeros(contacts), np.zeros((harmonics, WIDTH)),
         np.zeros((harmonics, WIDTH)),
         np.empty((2, channels, harmonics)), np.empty((most * channels, WIDTH)), np.zeros(kept, np.int64),
+        np.zeros((kept if has_law(problem) else 0, contacts), np.int64),
         np.empty((kept, LONG, modes, padded(size))), np.empty((kept, size, padded(size))),
         np.empty((kept, contacts, padded(size))), _make_parts(problem, 1 if has_law(problem) else kept, most),
         np.zeros(contacts),
@@ -186,7 +187,13 @@ def set_interval(problem, i, row, h):
 @kernel
 def set_row(problem, i, row):
     """Fill the constants of r[i]."""
-    row.intervals[0] = _intervals(problem, i)
+    set_row_with(problem, i, intervals_of(problem.rates[i]), row)
+
+
+@kernel
+def set_row_with(problem, i, intervals, row):
+    """Fill the constants of r[i] for a number of intervals of half a period."""
+    row.intervals[0] = intervals
     h = math.pi / row.intervals[0]
     set_interval(problem, i, row, h)
     _set_waves(problem, row)

@@ -25,7 +25,7 @@ from .course import (
 )
 from .creep import end_creep, find_held, find_rest, keep_friction, restore_friction
 from .follow import FOLLOWED
-from .laws.speed import has_law
+from .laws.speed import has_law, is_certified, rate_under
 from .orbits import (
     AVERAGED,
     CHATTERS,
@@ -72,8 +72,9 @@ from .return_map import (
     round_state,
     steady_period,
     take_end,
+    unique_halves,
 )
-from .row import make_motion, make_row, set_row
+from .row import intervals_of, make_motion, make_row, set_row, set_row_with
 from .single_mass import solve_single
 from .single_tables import Single, fits_row, forget_row, make_single
 
@@ -124,7 +125,7 @@ def _go_on(problem, friction, halves, workspace):
 @kernel
 def _find_unique(problem, friction, cycles, tolerance, workspace):
     """Find the steady state where every motion reaches it; see `find`."""
-    memory, ring, base = workspace.memory, workspace.ring, base_halves(problem)
+    memory, ring, base = workspace.memory, workspace.ring, unique_halves(problem)
     spent = 0.0
     wait = 0
     pause = 0
@@ -309,11 +310,23 @@ def begin_row(problem, i, workspace):
 
 
 @kernel
-def is_unique(problem, friction):
-    """Whether the velocities of the steady state do not depend on the start: mu = 1 in all contacts, and no
-    friction that depends on the speed, where that is not known.
+def fit_row(problem, i, friction, workspace):
+    """Divide the period at r[i] as the friction of a cell wants it, whatever other cells there are; whether
+    the units of states change.
     """
-    unique = not has_law(problem)
+    intervals = intervals_of(rate_under(problem, i, friction))
+    changes = intervals != workspace.row.intervals[0]
+    if changes:
+        set_row_with(problem, i, intervals, workspace.row)
+    return changes
+
+
+@kernel
+def is_unique(problem, friction):
+    """Whether the velocities of the steady state do not depend on the start: mu = 1 in all contacts, and
+    friction does not depend on the speed, or damping outweighs its fall.
+    """
+    unique = is_certified(problem, friction)
     for j in range(friction.static.size):
         unique = unique and friction.static[j] <= friction.kinetic[j]
     return unique
@@ -402,7 +415,7 @@ def _locate(problem, friction, cycles, tolerance, workspace, by_tables):
     if by_tables:
         located, spent, _ = solve_single(problem, row, workspace.single, friction.kinetic[0], memory, record)
         if located:
-            return Steady(REPEATS, base_halves(problem), spent)
+            return Steady(REPEATS, unique_halves(problem), spent)
     return find(problem, friction, cycles, tolerance, workspace)
 
 
@@ -427,8 +440,9 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
     Steady, half periods measured, multiplier
     """
     row, memory, record = workspace.row, workspace.memory, workspace.record
-    base, unique = base_halves(problem), is_unique(problem, friction)
-    by_tables = what == RANGES and unique and fits_row(problem, row, workspace.single, base)
+    base, unique = unique_halves(problem), is_unique(problem, friction)
+    tables = what == RANGES and unique and not has_law(problem)
+    by_tables = tables and fits_row(problem, row, workspace.single, base)
     keep_friction(friction, workspace.places.limits)
     found = _locate(problem, friction, cycles, tolerance, workspace, by_tables)
     if found.status == REPEATS and settled:
@@ -436,7 +450,7 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
         copy_motion(memory.start, memory.senses, workspace.ring.orbit, workspace.ring.orbit_senses)
         if not unique:  # the last way was not over the whole period
             go_round(problem, row, friction, found.halves, workspace.motion, memory, record, False)
-        if has_law(problem):  # the motion from the start brought the contacts at rest to their places
+        if has_law(problem) and not unique:  # the motion from the start brought contacts to their places
             pass
         elif find_rests(memory, workspace.places) > 0 and not is_free(problem):
             found = _settle(problem, friction, state, found, cycles, tolerance, workspace)
@@ -476,6 +490,7 @@ def _one(problem, i, friction, state, limits, workspace, settled):
     row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     cycles, tolerance = limits
     begin_row(problem, i, workspace)
+    fit_row(problem, i, friction, workspace)
     from_rest(problem, row, friction, state, motion, memory, record, NOTHING)
     found, halves, multiplier = solve_from(
         problem, friction, state, cycles, tolerance, workspace, STEPS, settled

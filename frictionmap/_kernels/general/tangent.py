@@ -12,6 +12,9 @@ from .laws.kinds import has_force, holding_stiffness, is_spring, keeps_force, st
 from .laws.speed import has_law
 from .problem import INVERSE, LONG, TERMS
 
+#: Factor that spreads patterns over their places: odd, so that each contact counts, and no power of another.
+_SPREAD = 29
+
 
 @kernel
 def identity(problem, motion):
@@ -198,22 +201,39 @@ def _fill_pattern(problem, row, motion, slot):
     _onward(problem, row, motion, slot, 1.0, row.onward, slot)
 
 
+@inner_kernel
+def _digit(motion, j):
+    """The part of a contact in a pattern where friction has segments; 0 where it is held."""
+    return motion.segment[j] + 1 if motion.sense[j] != 0 else 0
+
+
 @kernel
-def _law_pattern(problem, motion):
-    """Number of the present pattern where friction has segments: a digit per contact, 0 where it is held."""
-    pattern = 0
+def _law_slot(problem, row, motion):
+    """`pattern_slot` where friction has segments.
+
+    With many contacts the patterns exceed all whole numbers: places are kept digit by digit.
+    """
+    slot = 0
     for j in range(motion.sense.size):
-        pattern *= problem.law.count[j] + 1
-        if motion.sense[j] != 0:
-            pattern += motion.segment[j] + 1
-    return pattern
+        slot = (slot * _SPREAD + _digit(motion, j)) % row.patterns.size
+    same = row.patterns[slot] != 0
+    for j in range(motion.sense.size):
+        same = same and row.segments[slot, j] == _digit(motion, j)
+    if not same:
+        _fill_pattern(problem, row, motion, slot)
+        row.patterns[slot] = 1
+        for j in range(motion.sense.size):
+            row.segments[slot, j] = _digit(motion, j)
+    return slot
 
 
 @kernel
 def pattern_slot(problem, row, motion):
     """Place of the present pattern in the tables of the row, filled if it is new there."""
-    pattern = _law_pattern(problem, motion) if has_law(problem) else 0
-    for j in range(0 if has_law(problem) else motion.sense.size):
+    if has_law(problem):
+        return _law_slot(problem, row, motion)
+    pattern = 0
+    for j in range(motion.sense.size):
         if motion.sense[j] == 0:
             pattern += 1 << j
     slot = pattern % row.patterns.size

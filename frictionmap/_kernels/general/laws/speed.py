@@ -7,9 +7,11 @@ from segment to segment without a jump: only the slope of the force changes.  A 
 begins to slide, is in segment 0.
 """
 
+import math
+
 from ...compiler import inner_kernel, kernel
 from ...compiler.vectors import LANES, load, store, total
-from ..counts import CROSSINGS
+from ..counts import COUNT_ROWS, CROSSINGS
 from ..crossings import first_zero
 from ..problem import TERMS, WATCHED, WIDTH, H, R, force_row, slide_velocity, velocity_row
 
@@ -25,6 +27,45 @@ ROSE, FELL = 64, 65
 def has_law(problem):
     """Whether the friction of any contact depends on its speed."""
     return problem.law.speed.shape[1] > 0
+
+
+@inner_kernel
+def count_rows(problem):
+    """Rows of the counters of a motion."""
+    return COUNT_ROWS + problem.law.speed.shape[1]
+
+
+@kernel
+def is_certified(problem, friction):
+    """Whether friction that falls with the speed leaves one steady state only; see `general.certificate`."""
+    certified = True
+    for j in range(problem.law.certified.size):
+        certified = certified and friction.kinetic[j] <= problem.law.certified[j]
+    return certified
+
+
+@kernel
+def steepest(problem, j):
+    """Largest modulus of the slopes of the friction of a contact over its speed."""
+    most = 0.0
+    for k in range(problem.law.speed.shape[1]):
+        most = max(most, abs(problem.law.slope[j, k]))
+    return most
+
+
+@kernel
+def rate_under(problem, i, friction):
+    """Bound on the rate of the fastest part of the motion at r[i], with the damping by friction of one cell;
+    see `general.problem.fastest`.
+    """
+    if not has_law(problem):
+        return problem.rates[i]
+    c, k, order = problem.law.norms[0], problem.law.norms[1], 0.0
+    for j in range(friction.kinetic.size):
+        c += friction.kinetic[j] * problem.law.steepest[j]
+    for n in range(problem.orders.size):
+        order = max(order, problem.orders[n])
+    return max(0.5 * (c + math.sqrt(c * c + 4.0 * k)) / problem.r[i], order)
 
 
 @inner_kernel

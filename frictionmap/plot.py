@@ -125,6 +125,11 @@ def draw(
         "history": {"history": plot_history, "energies": plot_energies},
         "spectrum": {"spectrum": plot_spectrum, "incremental": plot_incremental},
     }
+    if what not in drawn_of:
+        raise InputError(
+            "cannot draw motions on a belt without a load: there is no picture of them yet; draw a variable "
+            "with xarray, such as ds.regime.plot()"
+        )
     valid = drawn_of[what]
     if log:
         raise InputError(

@@ -7,6 +7,7 @@ import xarray as xr
 
 from .. import checks
 from ..errors import InputError
+from .belt_labels import BELTS
 from .design_labels import answer_labels
 from .estimate_labels import ESTIMATE_TEXTS, ESTIMATES
 from .labels import (
@@ -37,7 +38,7 @@ TEXTS = (
 #: Labels of the kinds of datasets with variables of their own.
 _OWN: dict[str, Callable[[], dict[str, Label]]] = {
     "estimates": lambda: ESTIMATES, "design": answer_labels, "history": motion_labels,
-    "spectrum": motion_labels,
+    "spectrum": motion_labels, "belt": lambda: BELTS,
 }  # fmt: skip
 
 
@@ -70,8 +71,11 @@ def _on_limit(name: object) -> bool:
 def kind(ds: xr.Dataset) -> str:
     """Kind of a dataset, or of a slice of one.
 
-    "map", "curves", "response", "boundaries", "estimates", "shares", "design", "history" or "spectrum".
+    "map", "curves", "response", "boundaries", "estimates", "shares", "design", "history", "spectrum" or
+    "belt".
     """
+    if "growth" in ds.variables and "wall_speed" in ds.variables:
+        return "belt"
     if "estimate" in ds.variables:
         return "estimates"
     if "question" in ds.variables:

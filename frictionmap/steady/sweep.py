@@ -16,6 +16,7 @@ from ..jobs import Progress, Watch
 from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
+from ..no_load.sweep import belt_map
 from ..single.maps import checked_axes
 from ..solvers.choose import engine_of
 from ..units.dimensions import axes_in_ratios
@@ -35,6 +36,7 @@ def sweep(
     threads: int | None = None,
     progress: Progress | None = None,
     units: Units | None = None,
+    wall_speed: ArrayLike | None = None,
     **settings: Unpack[SolverSettings],
 ) -> xr.Dataset:
     """Compute the regime of the steady state, and its stops per cycle, on a mu-r-beta grid.
@@ -65,6 +67,9 @@ def sweep(
     units : Units, optional
         Reference values that convert ratios to Hz and N.  Then r may be frequencies and beta friction forces:
         texts such as "4.2 Hz", or quantities of pint, astropy or unyt; numbers remain ratios.
+    wall_speed : array_like, shape (n_v,)
+        In the place of r, for one mass on a belt without a load: belt speeds over omega_1 P/k1 [-], > 0,
+        increasing.  All motions of a cell are found, and no settings apply.
 
     Returns
     -------
@@ -76,6 +81,10 @@ def sweep(
         With units also `frequency(r)` [Hz], `friction_force(beta)` [N], and every quantity in m, N or J in
         addition to its ratio, such as `contact_amplitude_m` and `beta_lim_N`.  For a reduced structure the
         attribute `reduction` gives its errors, and `reduction_check` what all modes, or many more, change.
+
+        With wall_speed on (mu, wall_speed, beta): `regime`, `also_reachable`, `growth`, `growth_frequency`,
+        `cycle_period`, `stops_per_cycle`, `stuck_fraction`, `x_max`, `x_min`; on (mu, beta)
+        `cycle_speed_lim`; `beta_slope_lim`, `beta_slope_certificate`.
 
     Raises
     ------
@@ -89,12 +98,29 @@ def sweep(
     >>> ds.stops_per_cycle.values
     array([[[ 0.,  2., nan]]], dtype=float32)
     """
+    if wall_speed is not None:
+        unused = {"r": r, "solver": solver, "axes": axes, **settings}
+        return _without_load(system, wall_speed, (beta, mu), units, unused)
     given = system_and_axes(system, r, beta, mu, units)
     if given.config is not None:
         solver = solver or given.config.solver
         axes = given.config.variations if axes is None else axes
     grid = (given.r, given.beta, given.mu)
     return swept(given.system, grid, merged(solver, settings), axes, threads, progress, given.units)
+
+
+def _without_load(
+    system: System | Configured, wall_speed: ArrayLike, others: tuple[ArrayLike | None, ArrayLike | None],
+    units: Units | None, unused: Mapping[str, Any],
+) -> xr.Dataset:  # fmt: skip
+    """Compute the dataset of `sweep` over belt speeds; `unused`: arguments that must not be given."""
+    for name, value in unused.items():
+        if value is not None:
+            raise InputError("cannot use", name, "with wall_speed: there is no load; omit one of them")
+    given = system_and_axes(system, None, *others, units, needs=("beta",))
+    if given.config is not None:
+        raise InputError("cannot use", "wall_speed", "with a configuration; give its system and the axes")
+    return belt_map(given.system, wall_speed, given.beta, given.mu, given.units)
 
 
 def swept(

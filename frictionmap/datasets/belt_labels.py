@@ -21,7 +21,7 @@ _REACHABLE = tuple(
 )
 
 
-def _of_cycle(meaning: str, least: float = -np.inf) -> Label:
+def _cycle_label(meaning: str, least: float = -np.inf) -> Label:
     return Label(np.float64, meaning, CELL, comment="NaN in steady sliding", least=least, nan=True)
 
 
@@ -43,12 +43,12 @@ BELTS = {
     "status": Label(np.int8, "how certain the motions are", CELL, _STATUSES),
     "growth": _real("growth rate of small vibrations about steady sliding, over omega_1", "< 0: stable"),
     "growth_frequency": _real("frequency of these vibrations, over omega_1", least=0.0),
-    "cycle_period": _of_cycle("period of the cycle, over 1/omega_1", least=0.0),
+    "cycle_period": _cycle_label("period of the cycle, over 1/omega_1", least=0.0),
     "stops_per_cycle": Label(np.float64, "number of stops per cycle", CELL, least=0.0),
     "stuck_fraction": Label(np.float64, "part of the cycle in which the mass sticks", CELL, least=0.0),
     "x_max": _real("largest displacement, over P/k1"),
     "x_min": _real("least displacement, over P/k1"),
-    "multiplier": _of_cycle("factor of a small deviation per cycle", least=0.0),
+    "multiplier": _cycle_label("factor of a small deviation per cycle", least=0.0),
     "segment_crossings": Label(np.float64, "crossings of break points of the law per cycle", CELL, least=0.0),
     "unstable_maximum": _real(
         "maximum of the least unstable cycle, over P/k1",

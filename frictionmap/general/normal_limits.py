@@ -35,7 +35,7 @@ def _parts(system: System) -> tuple[Structure, MergedContact, MovingNormal, Norm
 
 
 def no_slip_friction(system: System, r: np.ndarray, mu: np.ndarray) -> np.ndarray:
-    """Friction at preload, phi N0, from which the contact can rest for good, (n_mu, n_r); 0 if it locks
+    """Friction at preload, phi N0, from which the contact can rest permanently, (n_mu, n_r); 0 if it locks
     itself, NaN where no closed form holds.
 
     A contact on a belt cannot rest.
@@ -56,7 +56,7 @@ def no_slip_friction(system: System, r: np.ndarray, mu: np.ndarray) -> np.ndarra
 
 
 def _resting_variable(system: System, r: np.ndarray, mu: np.ndarray) -> dict[str, xr.Variable]:
-    """The boundary to a contact at rest for good: beta_noslip of an elastic one, else beta_stick."""
+    """The boundary to a contact at rest permanently: beta_noslip of an elastic one, else beta_stick."""
     found = no_slip_friction(system, r, mu)
     if np.isnan(found).any():
         return {}

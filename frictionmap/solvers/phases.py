@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class PhasesEngine(Engine):
     """Contacts that open, and piecewise linear springs.
 
-    What is not offered for them is refused here, and by `refuse_phases` where no engine is asked.
+    Other questions are refused here, and by `refuse_phases` where no engine is asked.
     """
 
     has_closed_limits = False

@@ -155,7 +155,7 @@ def test_parallel_contacts_with_normal_forces_are_not_merged():
     assert system.contact_system.count == 3
 
 
-def test_springs_of_a_chain_and_piecewise_linear_ones_are_told_apart(tmp_path):
+def test_springs_of_a_chain_and_piecewise_linear_ones_are_distinguished(tmp_path):
     path = tmp_path / "drive.toml"
     path.write_text(
         '[system]\nmasses = ["40 kg", "20 kg"]\nstiffness_ratios = [1.0, 0.5]\n'

@@ -8,5 +8,7 @@ arrays      the same as arrays for the kernels
 quantities  outputs of cells: names, what they are computed from
 motion      one motion in time, from the Taylor terms of its steps
 solve       steady motions over mu, r and beta
+sliding     steady sliding on belts: its place, and the growth of small vibrations
+free        steady motions without a load over mu, belt speed and beta
 ==========  ==================================================================================
 """

@@ -26,12 +26,13 @@ _TURN = 2.0 * np.pi
 
 
 class Solved(NamedTuple):
-    """Cells of one frequency ratio, of n masses, N contacts and S springs; per period of the load."""
+    """Cells of one frequency ratio or belt speed, of n masses, N contacts and S springs."""
 
     cells: Cells
     law: np.ndarray  # (N,)
     presses: np.ndarray  # (N,) bool
     n: int
+    loaded: bool  # whether there is a load, whose periods are cycles
 
     def rows(self, first: int, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest values of some rows."""
@@ -54,14 +55,25 @@ class Solved(NamedTuple):
         return self.rows(2 * self.n + self.law.size, self.law.size)
 
     @property
-    def periods(self) -> np.ndarray:
-        """Periods of the record, (B, 1); NaN where there is none."""
-        found = self.cells.numbers[:, AVERAGED]
+    def recorded(self) -> np.ndarray:
+        """Time of the record, (B, 1); NaN where there is none."""
+        found = self.cells.numbers[:, AVERAGED] * (_TURN if self.loaded else 1.0)
         return np.where(found > 0.0, found, np.nan)[:, np.newaxis]
 
+    @property
+    def periods(self) -> np.ndarray:
+        """Cycles of the record, (B, 1); NaN where there is none, and of cycles that do not repeat."""
+        if self.loaded:
+            return self.recorded / _TURN
+        return self.recorded / self.cells.numbers[:, PERIOD, np.newaxis]
+
     def per_period(self, what: int, laws: tuple[int, ...] = (RIGID, ELASTIC)) -> np.ndarray:
-        """A counter per period; NaN for contacts of other laws."""
+        """A counter per cycle; NaN for contacts of other laws."""
         return np.where(np.isin(self.law, laws), self.cells.counts[:, what] / self.periods, np.nan)
+
+    def share(self, what: int, laws: tuple[int, ...] = (RIGID, ELASTIC)) -> np.ndarray:
+        """A time over that of the record; NaN for contacts of other laws."""
+        return np.where(np.isin(self.law, laws), self.cells.counts[:, what] / self.recorded, np.nan)
 
 
 def contact_regimes(solved: Solved) -> np.ndarray:
@@ -74,7 +86,7 @@ def contact_regimes(solved: Solved) -> np.ndarray:
     found[one_way & ~still] = regimes.ONE_WAY_SLIDING
     found[still] = regimes.PERMANENT_STICKING
     found[:, solved.law == SMOOTH] = regimes.CONTINUOUS
-    found[np.isnan(solved.periods[:, 0])] = regimes.UNRESOLVED
+    found[np.isnan(solved.recorded[:, 0])] = regimes.UNRESOLVED
     return found
 
 
@@ -82,7 +94,7 @@ def regime(solved: Solved) -> np.ndarray:
     """Regime of every cell, (B,)."""
     each = contact_regimes(solved)
     if each.shape[1] == 0:
-        known = ~np.isnan(solved.periods[:, 0])
+        known = ~np.isnan(solved.recorded[:, 0])
         return np.where(known, regimes.CONTINUOUS, regimes.UNRESOLVED)
     least, most = each.min(axis=1), each.max(axis=1)
     found = np.full(least.shape, regimes.STICK_SLIP)
@@ -132,11 +144,11 @@ TABLE: dict[str, Callable[[Solved], np.ndarray]] = {
     "unique": lambda solved: np.zeros(len(solved.cells.numbers), np.int8),
     "stops_per_cycle": lambda solved: solved.per_period(STOPS, (RIGID,)),
     "turns_per_cycle": lambda solved: solved.per_period(TURNS, (RIGID,)),
-    "stuck_fraction": lambda solved: solved.per_period(STUCK, (RIGID,)) / _TURN,
+    "stuck_fraction": lambda solved: solved.share(STUCK, (RIGID,)),
     "slips_per_cycle": lambda solved: solved.per_period(SLIPS, (ELASTIC,)),
     "slip_reversals_per_cycle": lambda solved: solved.per_period(REVERSALS, (ELASTIC,)),
-    "elastic_fraction": lambda solved: solved.per_period(STUCK, (ELASTIC,)) / _TURN,
-    "open_fraction": _normal_only(lambda solved: solved.per_period(OPEN, (RIGID, ELASTIC, SMOOTH)) / _TURN),
+    "elastic_fraction": lambda solved: solved.share(STUCK, (ELASTIC,)),
+    "open_fraction": _normal_only(lambda solved: solved.share(OPEN, (RIGID, ELASTIC, SMOOTH))),
     "separations_per_cycle": _normal_only(
         lambda solved: solved.per_period(LIFTOFFS, (RIGID, ELASTIC, SMOOTH))
     ),
@@ -157,6 +169,24 @@ TABLE: dict[str, Callable[[Solved], np.ndarray]] = {
 }
 
 
-def solved_of(problem: Problem, cells: Cells) -> Solved:
+def free_regime(solved: Solved) -> np.ndarray:
+    """Regime of every cell without a load, (B,)."""
+    numbers = solved.cells.numbers
+    stuck = (solved.cells.counts[:, STUCK] > 0.0).any(axis=1)
+    found = np.where(stuck, regimes.STICK_SLIP_CYCLE, regimes.CYCLE_WITHOUT_STOPS)
+    found[numbers[:, CYCLES] == 1.0] = regimes.STEADY_SLIDING
+    lost = (numbers[:, CYCLES] != 1.0) & ~(numbers[:, PERIOD] > 0.0)
+    return np.where(lost, regimes.UNRESOLVED, found).astype(np.int8)
+
+
+#: Outputs of cells without a load: some others are of loads alone.
+FREE_TABLE = {
+    name: values
+    for name, values in TABLE.items()
+    if name not in ("contact_regime", "period", "cycles", "origin")
+} | {"regime": free_regime, "cycle_period": _number(PERIOD)}
+
+
+def solved_of(problem: Problem, cells: Cells, loaded: bool = True) -> Solved:
     """Cells of a system whose rows observed are its masses and its storeys."""
-    return Solved(cells, problem.law, problem.presses, problem.observed.shape[0] // 2)
+    return Solved(cells, problem.law, problem.presses, problem.observed.shape[0] // 2, loaded)

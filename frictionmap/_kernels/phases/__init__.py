@@ -17,6 +17,7 @@ record    extremes, works and distances of a steady motion, and its steps
 follow    the motion from one time to another
 orbit     Newton's method for the state that returns, and its multipliers
 steady    the steady motion of one cell under a periodic load
-fill      cells of a map, and the steps of one motion
+cycles    the steady motion of one cell without a load, on belts: its period is unknown
+fill      cells of a map, and the steps of one motion, with and without a load
 ========  ====================================================================================
 """

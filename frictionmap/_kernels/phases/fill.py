@@ -1,15 +1,18 @@
-"""Cells of a map, and the steps of one motion."""
+"""Cells of a map, and the steps of one motion, with and without a load."""
 
 from typing import NamedTuple
 
 import numpy as np
 
+from ... import regimes
 from ..compiler import entry, kernel
+from .cycles import FAILS, REPEATS, SETTLES, WANDERS, find_cycle, make_events
 from .orbit import make_memory
 from .problem import Cell, make_motion
 from .steady import find_steady
 
-#: Columns of `Cells.numbers`.
+#: Columns of `Cells.numbers`; without a load the period over 1/omega_1, whether the motion settles, and the
+#: time of the record.
 STATUS, PERIOD, CYCLES, MULTIPLIER, AVERAGED = 0, 1, 2, 3, 4
 NUMBERS = 5
 
@@ -23,6 +26,15 @@ class Grid(NamedTuple):
     constant: np.ndarray  # (B, m) load on the modes
     start: np.ndarray  # (2, m) see `find_steady`
     cycles: int
+
+
+class Free(NamedTuple):
+    """What cells without a load have of their own; times in steps."""
+
+    starts: np.ndarray  # (B, 2, m) modes and their velocities
+    settles: np.ndarray  # (B,) int: whether steady sliding may attract
+    slowest: float  # slowest period of small vibrations
+    longest: float  # time that a motion is followed at most
 
 
 class Cells(NamedTuple):
@@ -48,13 +60,8 @@ def _copy(found, into):
 
 
 @kernel
-def put_cell(motion, memory, found, out, at):
-    """Store a steady motion in a cell."""
-    out.numbers[at, STATUS], out.numbers[at, PERIOD] = found.status, found.period
-    out.numbers[at, CYCLES], out.numbers[at, MULTIPLIER] = found.cycles, found.multiplier
-    out.numbers[at, AVERAGED] = found.averaged
-    if found.averaged == 0:
-        return
+def _put_motion(motion, memory, out, at):
+    """Store the record of a motion in a cell."""
     record = motion.record
     for k in range(motion.counts.shape[0]):
         _copy(motion.counts[k], out.counts[at, k])
@@ -65,7 +72,19 @@ def put_cell(motion, memory, found, out, at):
     _copy(record.distance, out.distance[at])
     _copy(motion.crossings, out.crossings[at])
     _copy(record.spring_force, out.spring_force[at])
-    _copy(memory.start, out.state[at])
+    for a in range(out.state.shape[1]):
+        out.state[at, a] = memory.start[a]
+
+
+@kernel
+def put_cell(motion, memory, found, out, at):
+    """Store a steady motion in a cell."""
+    out.numbers[at, STATUS], out.numbers[at, PERIOD] = found.status, found.period
+    out.numbers[at, CYCLES], out.numbers[at, MULTIPLIER] = found.cycles, found.multiplier
+    out.numbers[at, AVERAGED] = found.averaged
+    if found.averaged == 0:
+        return
+    _put_motion(motion, memory, out, at)
 
 
 @entry
@@ -92,4 +111,41 @@ def fill_cells(problem, row, grid, steps, out, cancel):
         cell = Cell(grid.limit[at], grid.static[at], grid.preload[at], constant)
         found = find_steady(problem, row, cell, motion, memory, grid.start, grid.cycles)
         put_cell(motion, memory, found, out, at)
+    return motion
+
+
+@entry
+def fill_cycles(problem, row, grid, free, steps, out, cancel):
+    """Fill cells without a load; return the motion, whose record is that of the last cell.
+
+    Parameters
+    ----------
+    problem, row : Problem, Row
+    grid, out : Grid, Cells
+    free : Free
+    steps : steps that the record keeps
+    cancel : (1,) not 0 where the rest is not wanted
+    """
+    modes = problem.squares.size
+    motion = make_motion(problem, steps)
+    size = motion.tangent.shape[0] + 1  # the period is one more unknown
+    memory, events = make_memory(problem, size), make_events(problem, size)
+    constant = np.zeros(modes)
+    for at in range(grid.limit.shape[0]):
+        if cancel[0] != 0:
+            break
+        for i in range(modes):
+            constant[i] = row.h * row.h * grid.constant[at, i]
+        cell = Cell(grid.limit[at], grid.static[at], grid.preload[at], constant)
+        limits = (free.slowest, free.longest, free.settles[at] != 0)
+        found = find_cycle(problem, row, cell, motion, memory, events, free.starts[at], limits)
+        settled, lost = found.code == SETTLES, found.code == FAILS
+        status = regimes.IRREGULAR if found.code == WANDERS else regimes.RESOLVED
+        out.numbers[at, STATUS] = regimes.TOO_MANY_EVENTS if lost else status
+        out.numbers[at, PERIOD] = found.time * row.h if found.code == REPEATS else np.nan
+        out.numbers[at, CYCLES] = 1.0 if settled else 0.0
+        out.numbers[at, MULTIPLIER] = found.multiplier
+        out.numbers[at, AVERAGED] = 0.0 if settled or lost else found.time * row.h
+        if not (settled or lost):
+            _put_motion(motion, memory, out, at)
     return motion

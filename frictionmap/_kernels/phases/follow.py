@@ -16,7 +16,7 @@ FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
 
 #: Events in a step, and events at one time, that are followed.
 _MOST_EVENTS = 2000
-_MOST_IMMEDIATE = 50
+MOST_IMMEDIATE = 50
 
 
 @kernel
@@ -43,6 +43,38 @@ def pass_event(problem, row, cell, tau, motion, who, what, derive):
 
 
 @kernel
+def step_on(problem, row, cell, tau, interval, rest, motion, derive):
+    """Follow the motion to the next event of a step, or to its end; the pattern does not change.
+
+    Parameters
+    ----------
+    problem, row, cell : Problem, Row, Cell
+    tau, interval : phase, and number of the step if it begins here; see `begin_step`
+    rest : of the step, over its length
+    motion : Motion
+    derive : whether the derivatives are carried on
+
+    Returns
+    -------
+    (x, who, what) : length of the way, and the event, see `first_event`
+    """
+    recorded = motion.record.active[0] != 0
+    begin_step(problem, row, cell, tau, interval, motion)
+    observe(problem, row, motion, recorded)
+    found, who, what = first_event(problem, cell, motion, rest)
+    step = min(found, rest)
+    if step > 0.0:
+        if recorded:
+            record_step(problem, row, cell, motion, tau, step)
+        if derive:
+            advance_tangent(problem, row, cell, motion, step)
+        count_time(problem, motion, motion.counts, step * row.h)
+        advance(problem, cell, motion, step)
+        clear_leads(motion)
+    return step, who, what
+
+
+@kernel
 def cross(problem, row, cell, begin, interval, length, motion, derive):
     """Follow the motion through one step, or a part of it.
 
@@ -60,26 +92,14 @@ def cross(problem, row, cell, begin, interval, length, motion, derive):
     """
     x, tau, immediate = 0.0, begin, 0
     for _ in range(_MOST_EVENTS):
-        rest = length - x
-        recorded = motion.record.active[0] != 0
-        begin_step(problem, row, cell, tau, interval if x == 0.0 else -1, motion)
-        observe(problem, row, motion, recorded)
-        found, who, what = first_event(problem, cell, motion, rest)
-        step = min(found, rest)
-        if step > 0.0:
-            if recorded:
-                record_step(problem, row, cell, motion, tau, step)
-            if derive:
-                advance_tangent(problem, row, cell, motion, step)
-            count_time(problem, motion, motion.counts, step * row.h)
-            advance(problem, cell, motion, step)
-            clear_leads(motion)
+        number = interval if x == 0.0 else -1
+        step, who, what = step_on(problem, row, cell, tau, number, length - x, motion, derive)
         if who < 0:
             return FOLLOWED
         x += step
         tau = begin + x * row.h
         immediate = immediate + 1 if step == 0.0 else 0
-        if immediate > _MOST_IMMEDIATE:
+        if immediate > MOST_IMMEDIATE:
             return CHATTERS
         if not pass_event(problem, row, cell, tau, motion, who, what, derive):
             return UNDETERMINED
@@ -104,4 +124,20 @@ def follow_to_section(problem, row, cell, begin, motion):
         code = cross(problem, row, cell, begin + k * row.h, -1, min(1.0, parts - k), motion, False)
         if code != FOLLOWED:
             return code
+    return FOLLOWED
+
+
+@kernel
+def follow_time(problem, row, cell, time, motion, derive):
+    """Follow a motion without a load for some time, in steps; a code of `cross`.
+
+    The first step begins at an event or inside a phase, and so does the last one end.
+    """
+    whole = math.floor(time)
+    for k in range(int(whole)):
+        code = cross(problem, row, cell, k * row.h, -1, 1.0, motion, derive)
+        if code != FOLLOWED:
+            return code
+    if time > whole:
+        return cross(problem, row, cell, whole * row.h, -1, time - whole, motion, derive)
     return FOLLOWED

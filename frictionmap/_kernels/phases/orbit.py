@@ -244,17 +244,13 @@ def _rests(problem, motion, j):
 
 
 @kernel
-def multiplier(problem, motion, memory):
-    """Largest modulus of the multipliers, without those of the places of contacts that rest.
+def remove_rests(problem, motion, memory, size):
+    """Take the multipliers of the places of contacts that rest from `matrix`.
 
     A place, or the place of a slider behind a spring, is a left eigenvector of the multiplier 1; a rank-one
     change takes it to 0 and leaves the others.
     """
-    modes, size = problem.squares.size, memory.right.size
-    left = memory.right
-    for a in range(size):
-        for b in range(size):
-            memory.matrix[a, b] = motion.tangent[a, b]
+    modes, left = problem.squares.size, memory.right
     for j in range(problem.law.size):
         if not _rests(problem, motion, j):
             continue
@@ -274,4 +270,14 @@ def multiplier(problem, motion, memory):
                 sum_ += memory.matrix[a, b] * left[b]
             for b in range(size):
                 memory.matrix[a, b] -= sum_ * left[b] / square
+
+
+@kernel
+def multiplier(problem, motion, memory):
+    """Largest modulus of the multipliers, without those of the places of contacts that rest."""
+    size = motion.tangent.shape[0]
+    for a in range(size):
+        for b in range(size):
+            memory.matrix[a, b] = motion.tangent[a, b]
+    remove_rests(problem, motion, memory, size)
     return spectral_radius(memory.matrix, size, memory.square, 0.0)

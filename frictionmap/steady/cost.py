@@ -13,6 +13,7 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
+from ..model.friction_law import MOST_POINTS
 from ..model.settings import RECORDED, CurveSettings, Solver
 from ..model.system import System
 from ..solvers.choose import engine_of
@@ -63,9 +64,8 @@ def memory_of_map(
     from ..single.quantity_data import quantity_request
 
     of_cycle = [name for name in outputs if LABELS[name].needs == "cycle"]
-    return _memory(
-        {**counts, "dof": masses}, _also_in_si({*outputs, "status"}, units), quantity_request(of_cycle)
-    )
+    sizes = {**counts, "dof": masses, "segment": MOST_POINTS}
+    return _memory(sizes, _also_in_si({*outputs, "status"}, units), quantity_request(of_cycle))
 
 
 def memory_of_curves(

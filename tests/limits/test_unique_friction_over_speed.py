@@ -216,3 +216,19 @@ def test_patterns_of_many_contacts_and_segments_are_not_confused(monkeypatch):
     slides = np.abs(moved).max(axis=1) > 1e-9
     assert slides.tolist() == [digit > 0 for digit in digits[::-1]]
     assert np.abs(problem.chi @ tables[0][modes : 2 * modes, :modes]).max() < 1e-12
+
+
+def test_files_and_stores_have_the_shares_of_segments(tmp_path):
+    system = pair(
+        fm.Contact(masses=1, law=FALLING), fm.Contact("between-masses", [1, 2], ratio=0.3, law=RISING), 0.1
+    )
+    axes = {"r": [0.5, 0.9, 1.3], "beta": [0.1, 0.3]}
+    ds = fm.sweep(system, **axes, outputs=["segment_fraction", "unique"])
+    fm.save(ds, tmp_path / "map.nc")
+    fm.sweep_to(tmp_path / "map.zarr", system, **axes, outputs=["segment_fraction", "unique"])
+    for path in ("map.nc", "map.zarr"):
+        found = fm.open(tmp_path / path)
+        assert found.segment_fraction.dims == ("mu", "r", "beta", "contact", "segment")
+        assert found.segment.values.tolist() == [1, 2, 3]
+        for name in ("segment_fraction", "unique"):
+            assert np.array_equal(found[name].values, ds[name].values, equal_nan=True)

@@ -12,6 +12,8 @@ from frictionmap._kernels.general.row import make_motion, make_row, set_row
 from frictionmap._kernels.general.tangent import pattern_slot
 from frictionmap.general.certificate import certified_beta, certified_friction
 from frictionmap.general.problem import problem_of
+from frictionmap.stores.run import fill_store, in_this_process
+from frictionmap.stores.study import study_of
 from tests.kernels import callable_kernel
 
 GENTLE = {"speed": [0.0, 0.4, 1.0], "factor": [1.0, 0.9, 0.85], "slope": 0.0}
@@ -219,16 +221,18 @@ def test_patterns_of_many_contacts_and_segments_are_not_confused(monkeypatch):
 
 
 def test_files_and_stores_have_the_shares_of_segments(tmp_path):
+    pytest.importorskip("zarr")
     system = pair(
         fm.Contact(masses=1, law=FALLING), fm.Contact("between-masses", [1, 2], ratio=0.3, law=RISING), 0.1
     )
-    axes = {"r": [0.5, 0.9, 1.3], "beta": [0.1, 0.3]}
-    ds = fm.sweep(system, **axes, outputs=["segment_fraction", "unique"])
-    fm.save(ds, tmp_path / "map.nc")
-    fm.sweep_to(tmp_path / "map.zarr", system, **axes, outputs=["segment_fraction", "unique"])
-    for path in ("map.nc", "map.zarr"):
-        found = fm.open(tmp_path / path)
-        assert found.segment_fraction.dims == ("mu", "r", "beta", "contact", "segment")
-        assert found.segment.values.tolist() == [1, 2, 3]
-        for name in ("segment_fraction", "unique"):
-            assert np.array_equal(found[name].values, ds[name].values, equal_nan=True)
+    axes = {"mu": np.array([1.0]), "r": np.array([0.5, 0.9, 1.3]), "beta": np.array([0.1, 0.3])}
+    solver = fm.Solver(outputs=["segment_fraction", "unique"])
+    ds = fm.sweep(system, axes["r"], axes["beta"], solver=solver)
+    ds.to_netcdf(tmp_path / "map.nc")
+    fill_store(tmp_path / "map.zarr", study_of(system, None, axes, solver), "map", in_this_process(1))
+    for name in ("map.nc", "map.zarr"):
+        with fm.open(tmp_path / name) as found:
+            assert found.segment_fraction.dims == ("mu", "r", "beta", "contact", "segment")
+            assert found.segment.values.tolist() == [1, 2, 3]
+            for output in solver.outputs:
+                assert np.array_equal(found[output].values, ds[output].values, equal_nan=True)

@@ -22,7 +22,7 @@ features       high-frequency limits, peak thresholds, invariant points: feature
 theory         closed forms over frequency: beta_lim, beta_stick, continuous motion
 single         one rigid contact under one harmonic load: cells, maps, curves, motions
 general        several contacts, springs in contacts, belts, periodic loads: boundaries, maps, motions
-no_load        structures on belts without a load: steady sliding, and all cycles of one mass
+no_load        motions on belts without a load: steady sliding, its stability, and cycles
 phases         systems with linear phases: normal forces that move, separation, gaps, bilinear springs
 solvers        the engines behind one interface, and which of them answers for a system
 steady         steady states: cells, maps, response curves, time histories; time and memory of a map
@@ -75,6 +75,7 @@ if TYPE_CHECKING:
     from .motions.statistics import stationary
     from .plot import (
         animate,
+        plot_belt,
         plot_boundaries,
         plot_curves,
         plot_design,
@@ -126,6 +127,7 @@ __all__ = [
     "identify",
     "load_config",
     "open",
+    "plot_belt",
     "plot_boundaries",
     "plot_curves",
     "plot_design",
@@ -172,6 +174,7 @@ _HOME = {
     "history": "motions.dataset",
     "load_config": "files.config",
     "open": "files.opening",
+    "plot_belt": "plot",
     "plot_boundaries": "plot",
     "plot_curves": "plot",
     "plot_design": "plot",

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from .pictures.options import FigureOptions
     from .pictures.panels import AxesArray
 
-_NAMES = {code.value: code.name.replace("_", "-") for code in regimes.BELT_REGIMES}
+_NAMES = {
+    code.value: code.name.replace("_", "-") for code in (*regimes.BELT_REGIMES, *regimes.NO_LOAD_REGIMES)
+}
 
 
 @xr.register_dataset_accessor("frictionmap")

@@ -18,6 +18,7 @@ from .pictures.curves.figure import CURVE_VARIABLES, plot_curves
 from .pictures.curves.harmonics import HARMONIC_VARIABLES
 from .pictures.designs.figure import plot_design
 from .pictures.fits.figure import plot_fit
+from .pictures.maps.belt_map import plot_belt
 from .pictures.maps.boundary_map import plot_boundaries
 from .pictures.maps.force_map import plot_forces
 from .pictures.maps.quantity_map import plot_quantity, quantities_of
@@ -41,6 +42,7 @@ __all__ = [
     "check_picture",
     "draw",
     "pictured",
+    "plot_belt",
     "plot_boundaries",
     "plot_curves",
     "plot_design",
@@ -124,12 +126,8 @@ def draw(
         "design": {"design": plot_design},
         "history": {"history": plot_history, "energies": plot_energies},
         "spectrum": {"spectrum": plot_spectrum, "incremental": plot_incremental},
+        "belt": {"regimes": plot_belt},
     }
-    if what not in drawn_of:
-        raise InputError(
-            "cannot draw motions on a belt without a load: there is no picture of them yet; draw a variable "
-            "with xarray, such as ds.regime.plot()"
-        )
     valid = drawn_of[what]
     if log:
         raise InputError(

@@ -25,6 +25,7 @@ __all__ = [
     "CLOSED_FORM",
     "COINCIDENCE",
     "CONTINUOUS",
+    "CYCLE_WITHOUT_STOPS",
     "DIVERGENCE",
     "FLUTTER",
     "INSIDE",
@@ -36,6 +37,7 @@ __all__ = [
     "NOT_PERIODIC",
     "NOT_REACHED",
     "NO_LIMIT",
+    "NO_LOAD_REGIMES",
     "ONE_WAY_SLIDING",
     "ORIGINS",
     "PERIODIC_ORBIT",
@@ -46,7 +48,9 @@ __all__ = [
     "RESOLVED",
     "SLIDING_LIMIT_KINDS",
     "STATUSES",
+    "STEADY_SLIDING",
     "STICK_SLIP",
+    "STICK_SLIP_CYCLE",
     "TOO_MANY_EVENTS",
     "TURN",
     "UNLOADED",
@@ -119,7 +123,7 @@ BELT_REGIMES = (
 
 #: Regimes of systems with a belt and no load.
 NO_LOAD_REGIMES = (
-    Code(UNRESOLVED, "unresolved", "no steady state found; see status"),
+    REGIMES[0],
     Code(STEADY_SLIDING, "steady_sliding", "the belt slides under the mass, which does not vibrate"),
     Code(STICK_SLIP_CYCLE, "stick_slip_cycle", "the belt carries the mass along, and it slips back"),
     Code(CYCLE_WITHOUT_STOPS, "cycle_without_stops", "the mass vibrates and never sticks to the belt"),
@@ -217,7 +221,7 @@ def _code(codes: tuple[Code, ...], value: int, what: str) -> Code:
 
 def regime_name(regime: int) -> str:
     """Name of a regime code, such as "stick_slip" of 1."""
-    return _code(REGIMES, regime, "regime").name
+    return _code((*BELT_REGIMES, *NO_LOAD_REGIMES[1:]), regime, "regime").name
 
 
 def status_meaning(status: int) -> str:

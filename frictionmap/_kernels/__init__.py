@@ -18,7 +18,7 @@ logs               numbers of every cycle of a motion that does not repeat, thei
 long_periods       when a motion is searched for a long period, and when it is taken as irregular
 general            any number of contacts, springs in contacts, belts, periodic loads
 history            motions in time under records
-no_load            one mass on a belt without a load: its phases, all its cycles
+no_load            motions on a belt without a load: all cycles of one mass; rides of structures
 phases             normal forces that move, separation, piecewise linear springs
 engine             solver of cells: recurrence, periodic orbits, outputs, stability, coexistence
 =================  =====================================================================================

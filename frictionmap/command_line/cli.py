@@ -65,6 +65,9 @@ def _report(options: Options, output: "Output", *summary: str) -> None:
 def _map(options: Options, config: "Config", output: "Output") -> None:
     from ..steady.sweep import sweep
 
+    if config.wall_speed is not None:
+        _belt_map(options, config, output)
+        return
     points = 1 if config.variations is None else config.variations.count
     cells = points * config.mu.size * config.r.size * config.beta.size
 
@@ -77,6 +80,21 @@ def _map(options: Options, config: "Config", output: "Output") -> None:
         return _with_borders(ds, config) if config.borders else ds
 
     _fill_cells(options, config, output, f"map of {cells:,} cells", run)
+
+
+def _belt_map(options: Options, config: "Config", output: "Output") -> None:
+    """Compute a map over belt speeds without a load."""
+    from .._kernels.compiler.notices import listening
+    from ..files.belts import describe_belts
+    from ..steady.sweep import sweep
+    from .progress import Progress
+
+    assert config.wall_speed is not None
+    cells = config.mu.size * config.wall_speed.size * config.beta.size
+    with Progress(f"map of {cells:,} cells", options.quiet) as progress, listening(progress.compiling):
+        ds = sweep(config, threads=options.threads, progress=progress)
+        output.fill(_finish(ds, config, options))
+    _report(options, output, *describe_belts(ds))
 
 
 def _with_borders(ds: "xr.Dataset", config: "Config") -> "xr.Dataset":
@@ -134,11 +152,26 @@ def _boundaries(options: Options, config: "Config", output: "Output") -> None:
     from ..files.summary import describe_reduction
     from ..steady.boundaries import boundaries
 
+    if config.wall_speed is not None:
+        _belt_boundaries(options, config, output)
+        return
     ds = boundaries(config.system, config.r, config.mu, units=config.units)
     if options.borders or config.borders:
         ds = _with_borders(ds, config)
     output.fill(_finish(ds, config, options))
     _report(options, output, f"{ds.sizes['r']:,} frequencies, {ds.sizes['mu']} mu", *describe_reduction(ds))
+
+
+def _belt_boundaries(options: Options, config: "Config", output: "Output") -> None:
+    """Find the limits of motions without a load."""
+    from ..files.belts import describe_belts
+    from ..steady.boundaries import boundaries
+
+    if options.borders:
+        config.refuse_belt("find borders between numbers of stops")
+    ds = boundaries(config)
+    output.fill(_finish(ds, config, options))
+    _report(options, output, *describe_belts(ds))
 
 
 def _response(options: Options, config: "Config", output: "Output") -> None:
@@ -176,6 +209,8 @@ def _compute(options: Options) -> None:
         raise InputError(
             f"cannot run {options.command} with [axes]: [axes] is supported by `map` only; remove it"
         )
+    if options.command in _UNDER_LOADS:
+        config.refuse_belt(_UNDER_LOADS[options.command])
     path = options.output or Path(f"{config.name}{ending}.nc")
     commands = {"map": _map, "curves": _curves, "boundaries": _boundaries, "response": _response}
     command = commands[options.command]
@@ -213,6 +248,7 @@ def _store(options: Options) -> None:
     from ..stores.study import study_of
 
     config = load_config(options.config, options.overrides, lambda *_: None)  # a block is all that is held
+    config.refuse_belt("write a store")
     axes = {"mu": config.mu, "r": config.r, "beta": config.beta}
     if config.borders:
         raise InputError(
@@ -336,6 +372,7 @@ def _reduce(options: Options) -> None:
     if path is not None and path.suffix.lower() != ".npz":
         raise InputError(f"-o must end in .npz; got {path}")
     config = load_config(options.config, options.overrides)
+    config.refuse_belt("state what a reduction costs")
     refuse_unreduced(config.system)
     path = path or Path(f"{config.name}-reduced.npz")
     with claimed(path, options.overwrite, config.files) as output:
@@ -620,6 +657,9 @@ def _check_text(arguments: Sequence[str]) -> None:
             encoding = sys.getfilesystemencoding().upper()
             raise InputError(f"arguments must be text in {encoding}; got {argument!r}") from None
 
+
+#: Commands that need a load, and what they do.
+_UNDER_LOADS = {"curves": "compute response curves", "response": "compute a response"}
 
 #: Functions of the commands; other commands compute a configuration.
 _COMMANDS: dict[str, Callable[[Options], None]] = {

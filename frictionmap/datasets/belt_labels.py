@@ -1,68 +1,126 @@
-"""Names, units and meanings of motions of one mass on a belt without a load, over mu, belt speed and beta."""
+"""Names, units and meanings of motions on a belt without a load, over mu, belt speed and beta."""
 
 import numpy as np
 
 from .. import regimes
-from .labels import COORDINATES, Label
+from .labels import BESIDE, COORDINATES, Label, in_si, si_units
 
 CELL = ("mu", "wall_speed", "beta")
 
 #: How certain the motions of a cell are.
-_STATUSES = (
+STATUSES = (
     regimes.Code(regimes.RESOLVED, "resolved", "all motions were found"),
     regimes.Code(
-        regimes.NOT_REACHED, "not_reached", "it is not proved that there are no further cycles without stops"
+        regimes.NOT_REACHED, "not_reached",
+        "of one mass: it is not proved that there are no further cycles without stops; of a structure: no "
+        "motion was reached",
+        "further motions are possible",
     ),
-    regimes.Code(regimes.MARGINAL, "marginal", "nothing damps or drives small vibrations"),
-)
+    regimes.Code(
+        regimes.MARGINAL, "marginal", "nothing damps or drives small vibrations",
+        "undamped: every small vibration lasts; add some damping",
+    ),
+    regimes.Code(
+        regimes.TOO_MANY_EVENTS, "too_many_events",
+        "the motion chatters, or contacts do not determine their forces",
+        "the motion chatters; change the belt speed or beta slightly",
+    ),
+    regimes.Code(
+        regimes.IRREGULAR, "irregular",
+        "a motion that does not repeat: extremes and stuck_fraction are those of its last cycles",
+        "no period; extremes and stuck_fraction are those of the last cycles followed",
+    ),
+)  # fmt: skip
 
 _REACHABLE = tuple(
     one._replace(value=1 << one.value) for one in regimes.NO_LOAD_REGIMES if one.value != regimes.UNRESOLVED
 )
 
 
-def _cycle_label(meaning: str, least: float = -np.inf) -> Label:
-    return Label(np.float64, meaning, CELL, comment="NaN in steady sliding", least=least, nan=True)
+def _cycle_label(meaning: str, *further: str, least: float = -np.inf) -> Label:
+    return Label(
+        np.float64, meaning, (*CELL, *further), comment="NaN in steady sliding", least=least, nan=True
+    )
 
 
-def _real(meaning: str, comment: str = "", dims: tuple[str, ...] = CELL, least: float = -np.inf) -> Label:
-    return Label(np.float64, meaning, dims, comment=comment, least=least, nan=True, inf=True)
+def _real(
+    meaning: str, comment: str = "", dims: tuple[str, ...] = CELL, least: float = -np.inf, units: str = "1"
+) -> Label:
+    return Label(np.float64, meaning, dims, comment=comment, least=least, nan=True, inf=True, units=units)
 
 
-#: Variables by name; times are over 1/omega_1, displacements over P/k1.
-BELTS = {
+_RATIOS = {
     "mu": COORDINATES["mu"],
     "wall_speed": Label(np.float64, "speed of the belt, over omega_1 P/k1", ("wall_speed",), least=0.0),
     "beta": COORDINATES["beta"],
+    "dof": COORDINATES["dof"],
+    "contact": BESIDE["contact"],
+    "contact_name": BESIDE["contact_name"],
+    "friction_force": BESIDE["friction_force"],
+    "friction_coefficient": BESIDE["friction_coefficient"],
     "regime": Label(
         np.int8, "motion that begins where the belt releases the mass", CELL, regimes.NO_LOAD_REGIMES
     ),
     "also_reachable": Label(
         np.uint8, "every stable motion of the cell", CELL, _REACHABLE, flags="flag_masks"
     ),
-    "status": Label(np.int8, "how certain the motions are", CELL, _STATUSES),
+    "status": Label(np.int8, "how certain the motions are", CELL, STATUSES),
     "growth": _real("growth rate of small vibrations about steady sliding, over omega_1", "< 0: stable"),
     "growth_frequency": _real("frequency of these vibrations, over omega_1", least=0.0),
     "cycle_period": _cycle_label("period of the cycle, over 1/omega_1", least=0.0),
-    "stops_per_cycle": Label(np.float64, "number of stops per cycle", CELL, least=0.0),
-    "stuck_fraction": Label(np.float64, "part of the cycle in which the mass sticks", CELL, least=0.0),
-    "x_max": _real("largest displacement, over P/k1"),
-    "x_min": _real("least displacement, over P/k1"),
+    "stops_per_cycle": _real("number of stops per cycle", least=0.0),
+    "turns_per_cycle": _real("changes of the sense of a slide without a stop, per cycle", least=0.0),
+    "stuck_fraction": _real("part of the cycle in which the mass sticks", least=0.0),
+    "x_max": _real("largest displacement of the masses, over P/k1", "", (*CELL, "dof")),
+    "x_min": _real("least displacement of the masses, over P/k1", "", (*CELL, "dof")),
     "multiplier": _cycle_label("factor of a small deviation per cycle", least=0.0),
-    "segment_crossings": Label(np.float64, "crossings of break points of the law per cycle", CELL, least=0.0),
+    "segment_crossings": _real("crossings of break points of the law per cycle", least=0.0),
     "unstable_maximum": _real(
-        "maximum of the least unstable cycle, over P/k1",
-        "NaN without one; a vibration with a smaller maximum ends in steady sliding if that is stable",
+        "largest displacement, in the direction of the belt, in the least unstable cycle, over P/k1",
+        "NaN without one; a smaller vibration ends in steady sliding if that is stable",
     ),
     "cycle_speed_lim": _real(
         "largest belt speed with a stick-slip cycle, over omega_1 P/k1", "0: none has one; infinite: any has",
         ("mu", "beta"), 0.0,
     ),
+    "sliding_speed_lim": _real(
+        "belt speed above which steady sliding is stable at every speed, over omega_1 P/k1",
+        "0: it is stable at all speeds", ("beta",), 0.0,
+    ),
+    "beta_sliding_lim": _real(
+        "friction ratio from which steady sliding is unstable", "infinite where friction does not fall",
+        ("wall_speed",), 0.0,
+    ),
     "beta_slope_lim": _real(
-        "beta times the slope of a fall of friction at which steady sliding loses stability", "", (), 0.0
+        "friction ratio times slope of its fall over speed from which steady sliding on a belt is unstable",
+        "", (), 0.0,
     ),
     "beta_slope_certificate": _real(
-        "beta times the slope of a fall of friction below which every motion ends in steady sliding", "", (),
-        0.0,
+        "friction ratio times steepest slope of its fall up to which every motion ends in steady sliding",
+        "for mu = 1", (), 0.0,
     ),
 }  # fmt: skip
+
+#: Variables and axes with a counterpart in SI units where the reference values are known, by measure.
+MEASURES = {
+    "length": ("x_max", "x_min", "unstable_maximum"),
+    "time": ("cycle_period",),
+    "velocity": ("wall_speed", "cycle_speed_lim", "sliding_speed_lim"),
+    "force": ("beta_sliding_lim",),
+    "frequency": ("growth_frequency",),
+}
+
+#: Labels by name; times are over 1/omega_1, displacements over P/k1.
+BELTS = _RATIOS | {
+    in_si(name, measure): _RATIOS[name]._replace(
+        long_name=_RATIOS[name].long_name.partition(", over ")[0], units=si_units(measure)
+    )
+    for measure, names in MEASURES.items()
+    for name in names
+}
+
+#: Variables that have one value per contact where there are several.
+OF_CONTACTS = ("stops_per_cycle", "turns_per_cycle", "stuck_fraction", "segment_crossings")
+
+#: Coordinates; the others are variables.
+AXES = (*CELL, "dof", "contact", "contact_name", "wall_speed_m_s", "friction_force", "friction_coefficient")

@@ -884,6 +884,11 @@ def in_si(name: str, measure: str) -> str:
     return f"{name}_{SI[measure][1]}"
 
 
+def si_units(measure: str) -> str:
+    """SI unit of a measure, as written in CF conventions."""
+    return SI[measure][0]
+
+
 def _si_label(label: Label, measure: str) -> Label:
     """Label of a variable in its SI unit."""
     name = re.sub(r", (over P.*|over omega_1.*|dx/dtau.*|in units of r)$", "", label.long_name)

@@ -74,7 +74,7 @@ def kind(ds: xr.Dataset) -> str:
     "map", "curves", "response", "boundaries", "estimates", "shares", "design", "history", "spectrum" or
     "belt".
     """
-    if "growth" in ds.variables and "wall_speed" in ds.variables:
+    if any(name in ds.variables for name in ("growth", "beta_sliding_lim", "cycle_speed_lim")):
         return "belt"
     if "estimate" in ds.variables:
         return "estimates"

@@ -90,7 +90,7 @@ def stamp(
         "references": REFERENCES,
         "system": system.describe(),
         "excitation": excitation_of(system),
-        **system.costs(np.atleast_1d(axes["r"])),
+        **(system.costs(np.atleast_1d(axes["r"])) if "r" in axes else {}),
         **made_by(function, title, system, axes, solver, curves, study, units),
     }
     return ds

@@ -86,6 +86,7 @@ def _ends(values: Any) -> tuple[float, float]:
 
 def scene_of(config: "Config") -> Scene:
     """Make the scene of a configuration, with the first point of further axes and the first mu."""
+    config.refuse_belt("open a page")
     system = config.system
     if config.variations is not None:
         system = config.variations.at([0] * len(config.variations.axes))

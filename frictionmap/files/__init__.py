@@ -15,6 +15,7 @@ checksums    checksums of stores: of their chunks, and of the files that describ
 slices       one point of further axes, selected from a file
 estimates    estimates: read, checked, summarised
 motions      motions in time: read, checked, summarised
+belts        motions without a load: read, checked, summarised
 designs      answers to design questions: read, checked, summarised
 reading      files and stores read, and checked against the schema
 opening      `open`: a file or store as a dataset

@@ -19,6 +19,7 @@ from ..model.sectors import in_full
 from ..model.settings import BORDERS, CurveSettings, Solver, curve_settings
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
+from ..no_load.belts import belts_of
 from ..units.axes import KINDS, Ladder, grid_ratios, needs
 from ..units.dimensions import axes_in_ratios, chain_in_ratios, in_ratios, wanted_axes
 from ..units.scales import Scales, Units, Wanted, rounded, scales_of
@@ -38,6 +39,8 @@ _SECTIONS: dict[str, tuple[str, ...] | None] = {
 _OF_CONTACTS = ("kind", "ratio", "stiffness", "law", "law_file", "normal")
 #: Key of [grid] in the place of beta: friction over the normal force of [units].
 _COEFFICIENT = "friction_coefficient"
+#: Key of [grid] in the place of r: belt speeds without a load.
+_SPEED = "wall_speed"
 
 _AXIS_KEYS = ("start", "stop", "step", "num", "values")
 #: Ways to give an axis exclude each other: on the command line, a key takes the place of these.
@@ -72,6 +75,14 @@ class Config:
     files: tuple[Path, ...] = ()  # that it was read from
     units: Units | None = None  # what r = 1 and beta = 1 are
     borders: bool = False  # whether borders between numbers of stops are asked for
+    wall_speed: np.ndarray | None = None  # in the place of r, which is empty, without a load
+
+    def refuse_belt(self, what: str) -> None:
+        """Refuse a grid of belt speeds; `what`: words after "cannot", such as "compute response curves"."""
+        if self.wall_speed is not None:
+            raise InputError(
+                f"cannot {what} over grid.wall_speed: this is offered under loads; give grid.r instead"
+            )
 
 
 #: Called with the numbers of values of mu, r and beta and of points along further axes, the system and the
@@ -81,6 +92,10 @@ Room = Callable[[Mapping[str, int], System, Solver, CurveSettings, Units | None]
 
 def _fits(counts: Mapping[str, int], *_: object) -> None:
     checks.cells(counts["mu"], counts["r"], counts["beta"], points=counts["points"])
+
+
+#: Tables that have no meaning without a load.
+_OF_LOADS = ("solver", "curves", "axes")
 
 
 def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | None = None) -> Config:
@@ -404,12 +419,15 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     further = further_axes(tree, scales)
     variations = None if further is None else checked_variations(system, further)
     grid = _grid(tree, scales_of(units, system, variations))
+    if _SPEED in grid:
+        return _belt(tree, text, path, grid, Common(title, system, units, files))
     counts = {key: _count(grid[key], f"grid.{key}") for key in ("mu", "r", "beta")}
     points = 1 if variations is None else variations.count
     (room or _fits)({**counts, "points": points}, system, solver, curves, units)
     axes = {
         key: checks.axis(_values(grid[key], f"grid.{key}"), f"grid.{key}", **bounds)
         for key, bounds in AXES.items()
+        if key in counts
     }
     if borders and variations is not None:
         raise InputError(
@@ -423,6 +441,31 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     return Config(
         title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, path.stem, variations,
         files, units, borders,
+    )  # fmt: skip
+
+
+def _belt(
+    tree: Mapping[str, object], text: str, path: Path, grid: Mapping[str, Any], common: Common
+) -> Config:
+    """Check a configuration of belt speeds without a load."""
+    for table in _OF_LOADS:
+        if table in tree:
+            raise InputError("cannot use", f"[{table}]", "with grid.wall_speed: there is no load; remove it")
+    axes = {}
+    for key in ("mu", _SPEED, "beta"):
+        _count(grid[key], f"grid.{key}")
+        bounds = AXES[key] if key in KINDS or key == "mu" else {"least": 0.0}
+        axes[key] = checks.axis(_values(grid[key], f"grid.{key}"), f"grid.{key}", **bounds)
+    checks.cells(axes["mu"].size, axes[_SPEED].size, axes["beta"].size)
+    if axes[_SPEED][0] == 0.0:
+        raise InputError("grid.wall_speed", "must be > 0 without a load: a belt at rest moves nothing; got 0")
+    try:
+        belts_of(common.system)
+    except InputError as error:
+        raise within("system", error) from None
+    return Config(
+        common.title, common.system, np.empty(0), axes["beta"], axes["mu"], Solver(), curve_settings(), text,
+        path.stem, None, common.files, common.units, wall_speed=axes[_SPEED],
     )  # fmt: skip
 
 
@@ -445,10 +488,16 @@ def _without_borders(solver: Mapping[str, object]) -> tuple[dict[str, object], b
 def _wanted(tree: Mapping[str, object]) -> list[Wanted]:
     """The numbers with units of [grid] and [axes]."""
     grid, axes = _table(tree, "grid"), _table(tree, "axes")
-    found = [one for key, kind in KINDS.items() for one in needs(grid.get(key), f"grid.{key}", kind)]
+    kinds = _kinds(grid)
+    found = [one for key, kind in kinds.items() for one in needs(grid.get(key), f"grid.{key}", kind)]
     if _COEFFICIENT in grid:
         found.append(Wanted("coefficient", f"grid.{_COEFFICIENT}", grid[_COEFFICIENT]))
     return [*found, *wanted_axes(axes)]
+
+
+def _kinds(grid: Mapping[str, object]) -> Mapping[str, str]:
+    """Kinds of the axes of [grid] with units: belt speeds take the place of r where there is no load."""
+    return {_SPEED: "velocity", "beta": KINDS["beta"]} if _SPEED in grid else KINDS
 
 
 def _grid(tree: Mapping[str, object], scales: Scales) -> dict[str, Any]:
@@ -456,7 +505,14 @@ def _grid(tree: Mapping[str, object], scales: Scales) -> dict[str, Any]:
     grid: dict[str, Any] = {"mu": [1.0], **_table(tree, "grid")}
     if _COEFFICIENT in grid:
         _put_coefficients(grid, scales)
-    for key, kind in KINDS.items():
+    if _SPEED in grid and "r" in grid:
+        raise InputError(
+            "cannot use",
+            "grid.wall_speed",
+            "with grid.r: it takes the place of r where there is no load; omit one; under a load, use "
+            "wall_speed in [axes]",
+        )
+    for key, kind in _kinds(grid).items():
         if key not in grid:
             raise InputError(f"grid.{key} must be a number, a list of numbers or a range; got nothing")
         if isinstance(grid[key], Mapping):

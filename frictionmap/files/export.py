@@ -11,6 +11,7 @@ from ..datasets.estimate_labels import OF_PARAMETERS
 from ..datasets.labels import COORDINATES, LABELS
 from ..datasets.schema import kind
 from ..errors import InputError
+from .belts import belt_table
 from .motions import table_of
 from .storage import write_netcdf
 
@@ -49,6 +50,8 @@ def _table(ds: xr.Dataset) -> Any:
         over = next((axis for axis in ("beta_search", "r_search") if axis in ds.coords), None)
         lines = [name for name in ds.data_vars if ds[name].dims == (over,)]
         return (ds[lines] if over else ds).to_dataframe()
+    if kind(ds) == "belt":
+        return belt_table(ds)
     if kind(ds) in ("history", "spectrum"):
         return table_of(ds)
     if kind(ds) == "shares":

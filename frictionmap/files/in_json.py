@@ -7,6 +7,7 @@ import xarray as xr
 
 from ..datasets.labels import LABELS, regime_of_choice
 from ..datasets.schema import kind
+from ..regimes import NO_LOAD_REGIMES
 
 #: Attributes of a file that the summary repeats.
 _ATTRIBUTES = ("title", "system", "source", "history")
@@ -46,7 +47,7 @@ def _variable(variable: xr.DataArray) -> dict[str, object]:
 
 def _cells(regime: xr.DataArray) -> dict[str, int]:
     """Number of cells of every regime that occurs."""
-    codes = (*LABELS["regime"].codes, *LABELS["regime"].also)
+    codes = (*LABELS["regime"].codes, *LABELS["regime"].also, *NO_LOAD_REGIMES[1:])
     counts = dict.fromkeys((code.name for code in codes), 0)
     for part in regime if regime.ndim else [regime]:  # a store may be larger than the memory
         values = part.values

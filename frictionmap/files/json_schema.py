@@ -64,7 +64,10 @@ def map_schema() -> dict[str, Any]:
     sections = {name: keyed_table(name, keys) for name, keys in KEYS.items() if name}
     sections["system"]["allOf"] = _TOGETHER
     sections["grid"] |= {
-        "required": ["r"], "oneOf": [{"required": ["beta"]}, {"required": ["friction_coefficient"]}],
+        "allOf": [
+            {"oneOf": [{"required": ["r"]}, {"required": ["wall_speed"]}]},
+            {"oneOf": [{"required": ["beta"]}, {"required": ["friction_coefficient"]}]},
+        ],
     }  # fmt: skip
     return {
         "$schema": DIALECT,

@@ -39,6 +39,7 @@ AXES: dict[str, dict[str, float]] = {
     "r": {"least": 0.0, "most": checks.LARGEST_RATIO},
     "beta": {"least": 0.0},
     "mu": {"least": 1.0},
+    "wall_speed": {"above": 0.0},
 }
 
 _TEXT: Schema = {"type": "string"}
@@ -596,6 +597,13 @@ KEYS: dict[str, tuple[Key, ...]] = {
             words=_RANGE,
         ),
         _grid_key("mu", "static-to-kinetic friction ratio, >= 1", default=[1.0]),
+        Key(
+            "wall_speed",
+            "instead of r, without a load: speed of the belt over omega_1 P/k_1",
+            axis("velocity", **AXES["wall_speed"]),
+            example="{ start = 0.05, stop = 1.5, num = 100 }",
+            words=_RANGE,
+        ),
     ),
     "solver": (
         _setting(

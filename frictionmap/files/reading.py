@@ -41,6 +41,7 @@ from ..datasets.schema import (
 )
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError, naming
+from .belts import belts_form
 from .checksums import RECORD, attributes_of, changed_description, damaged_chunk
 from .config import command_for, parse
 from .designs import design_form
@@ -269,6 +270,8 @@ def standard_form(ds: xr.Dataset) -> xr.Dataset:
         return design_form(ds)
     if what in ("history", "spectrum"):
         return motions_form(ds)
+    if what == "belt":
+        return belts_form(ds)
     ds = with_current_names(_ours(ds))
     ds = ds.set_coords([name for name in (*COORDINATES, *BESIDE) if name in ds.data_vars])
     if what == "response":

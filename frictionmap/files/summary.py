@@ -10,6 +10,7 @@ from .. import regimes
 from ..datasets.labels import CELL, IN_SI, LABELS, OLDER_NAMES, regime_of_choice
 from ..datasets.physical import describe_scales
 from ..datasets.schema import TEXTS, kind
+from .belts import describe_belts, is_in_si
 from .designs import describe_design
 from .estimates import describe_estimates, source_of_data
 from .motions import describe_motions
@@ -140,6 +141,13 @@ def describe_file(ds: xr.Dataset) -> str:
             [*lines, *axis_lines(ds), "motions", *(f"  {line}" for line in describe_motions(ds))]
         )
     lines += axis_lines(ds)
+    if what == "belt":
+        names = [str(name) for name in ds.data_vars if not is_in_si(str(name))]
+        in_si = ", ".join(str(name) for name in ds.data_vars if name not in names)
+        beside = _entry("in SI units", in_si) if in_si else []
+        return "\n".join(
+            [*lines, "variables", *(_named(ds[name]) for name in names), *beside, *describe_belts(ds)]
+        )
     listed = [name for name in ds.data_vars if _is_list(ds[name])]
     lines += _variables(ds, [str(name) for name in ds.data_vars if name not in listed])
     if listed:

@@ -783,12 +783,19 @@ class System(Shown):
         """Describe the system in one line."""
         return self._description
 
+    def describe_unloaded(self) -> str:
+        """Describe the system in one line, without its load."""
+        return self._describe_with("no load")
+
     @cached_property
     def _description(self) -> str:
+        return self._describe_with(self._describe_load())
+
+    def _describe_with(self, load: str) -> str:
         contacts = describe_contacts(self.contact_system, self.dofs)
         if self.springs is not None:
             contacts = f"{contacts}; {describe_springs(self.springs, self.dofs)}"  # type: ignore[arg-type]
-        words = (contacts, self._describe_load(), self._describe_damping())
+        words = (contacts, load, self._describe_damping())
         if self.n == 1 and self.matrices is None:
             spring = " without a spring" * self.rigid_modes
             return f"one mass{spring}; {words[0]}, {words[1]}; {words[2]}"

@@ -1,10 +1,16 @@
-"""Structures on belts without a load: steady sliding, its stability, and all cycles of one mass.
+"""Motions on belts without a load: steady sliding, its stability, and cycles.
 
-==========  ==================================================================================
-module      what is in it
-==========  ==================================================================================
-sliding     steady sliding of any structure: growth of small vibrations, slope at which they grow
-one_mass    all steady motions of one mass over mu, belt speed and beta
-sweep       these motions as a dataset
-==========  ==================================================================================
+=============  =====================================================================================
+module         what is in it
+=============  =====================================================================================
+belts          what moves with the belt, and what has no meaning without a load
+sliding        steady sliding of any structure: growth of small vibrations, slope at which they grow
+one_mass       all steady motions of one mass over mu, belt speed and beta
+limits         friction and belt speeds at which steady sliding loses stability
+dataset        motions as datasets: labels, units, provenance
+steady         steady sliding of a structure: its stability, and a proof that a motion ends there
+structure      cycles of structures: marched from a start, and closed by Newton's method
+structure_map  these motions over mu, belt speed and beta
+sweep          all motions over mu, belt speed and beta; their limits alone
+=============  =====================================================================================
 """

@@ -5,10 +5,14 @@ import numpy as np
 from .. import checks
 from .._kernels.no_load.fill import fill_cycle_speeds, fill_portraits
 from .._kernels.no_load.portrait import Portraits
+from ..jobs import Job, Progress, Watch, run_counted
 
 _TYPES = {"regime": np.int8, "reachable": np.uint8, "status": np.int8}
 
 Law = tuple[np.ndarray, np.ndarray, np.ndarray]  # speeds, factors and slopes of its segments, (K,)
+
+#: Cells per job, some milliseconds of work.
+_TILE = 64
 
 
 def _segments(law: Law) -> Law:
@@ -34,10 +38,33 @@ def portraits(law: Law, zeta: float, mu: np.ndarray, wall_speed: np.ndarray, bet
     mu = checks.axis(mu, "mu", least=1.0)
     beta = checks.axis(beta, "beta", least=0.0)
     wall_speed = checks.axis(wall_speed, "wall_speed", least=np.nextafter(0.0, 1.0))
-    shape = mu.size, wall_speed.size, beta.size
-    found = Portraits(*(np.empty(shape, _TYPES.get(name, np.float64)) for name in Portraits._fields))
-    fill_portraits(*_segments(law), float(zeta), mu, wall_speed, beta, found)
+    found = empty_portraits((mu.size, wall_speed.size, beta.size))
+    run_counted(portrait_jobs(law, zeta, (mu, wall_speed, beta), found), 1, None, None)
     return found
+
+
+def empty_portraits(shape: tuple[int, int, int]) -> Portraits:
+    """Arrays for the portraits of cells."""
+    return Portraits(*(np.empty(shape, _TYPES.get(name, np.float64)) for name in Portraits._fields))
+
+
+def portrait_jobs(
+    law: Law, zeta: float, axes: tuple[np.ndarray, np.ndarray, np.ndarray], found: Portraits
+) -> list[Job]:
+    """Jobs that fill the portraits of all cells over (mu, wall_speed, beta)."""
+    mu, speed, beta = axes
+    rows = max(1, _TILE // max(1, beta.size))
+    jobs: list[Job] = []
+    for m in range(mu.size):
+        for i in range(0, speed.size, rows):
+            part = Portraits(*(one[m : m + 1, i : i + rows] for one in found))
+            jobs.append(
+                (
+                    fill_portraits,
+                    (*_segments(law), float(zeta), mu[m : m + 1], speed[i : i + rows], beta, part),
+                )
+            )
+    return jobs
 
 
 def cycle_speed_limits(law: Law, zeta: float, mu: np.ndarray, beta: np.ndarray) -> np.ndarray:
@@ -45,3 +72,8 @@ def cycle_speed_limits(law: Law, zeta: float, mu: np.ndarray, beta: np.ndarray) 
     found = np.empty((mu.size, beta.size))
     fill_cycle_speeds(*_segments(law), float(zeta), mu, beta, found)
     return found
+
+
+def run(jobs: list[Job], threads: int | None, progress: Progress | None, watch: Watch | None = None) -> None:
+    """Run jobs on the threads asked for."""
+    run_counted(jobs, checks.threads(threads), progress, watch)

@@ -10,6 +10,9 @@ import numpy as np
 from ..errors import InputError
 from ..general.slopes import SlopeLimits, first_order, limits_of
 
+#: Real part of a root, over the largest root, that is rounding error.
+_ROUNDING = 1e-13
+
 
 class Growth(NamedTuple):
     """Fastest growing small vibration about steady sliding."""
@@ -29,10 +32,18 @@ def growth_of_sliding(
     vectors : (N, n) the contacts' vectors c
     slopes : (N,) beta g'(v) of the contacts
     """
-    whole = damping + np.einsum("j,ja,jb->ab", slopes, vectors, vectors)
-    roots = np.linalg.eigvals(first_order(mass, whole, stiffness))
+    roots = np.linalg.eigvals(vibrations(mass, damping, stiffness, vectors, slopes))
     fastest = roots[np.argmax(roots.real)]
-    return Growth(float(fastest.real), float(abs(fastest.imag)))
+    grows = abs(fastest.real) > _ROUNDING * np.abs(roots).max()
+    return Growth(float(fastest.real) if grows else 0.0, float(abs(fastest.imag)))
+
+
+def vibrations(
+    mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray, vectors: np.ndarray, slopes: np.ndarray
+) -> np.ndarray:
+    """Matrix of small vibrations, of first order; see `growth_of_sliding`."""
+    whole = damping + np.einsum("j,ja,jb->ab", slopes, vectors, vectors)
+    return first_order(mass, whole, stiffness)
 
 
 def slope_limit(

@@ -1,18 +1,22 @@
-"""Motions of one mass on a belt without a load as a dataset over mu, belt speed and beta."""
+"""Motions on a belt without a load over mu, belt speed and beta, and their boundaries, as datasets."""
+
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
-from ..datasets.belt_labels import BELTS
-from ..datasets.labels import attributes
 from ..errors import InputError
-from ..model.friction_law import FrictionLaw
+from ..jobs import Progress
 from ..model.system import System
 from ..units.axes import ratios, require
-from ..units.scales import Units, scales_of
-from .one_mass import Law, cycle_speed_limits, portraits
+from ..units.scales import Scales, Units, scales_of
+from .belts import Belts, belts_of
+from .dataset import belt_dataset
+from .limits import sliding_limits, slope_limits_of, speed_limits
+from .one_mass import Law, cycle_speed_limits, empty_portraits, portrait_jobs, run
+from .structure_map import structure_values
 
 #: Variables of the dataset and the fields of `Portraits` that they show.
 _FIELDS = {
@@ -23,30 +27,27 @@ _FIELDS = {
 }  # fmt: skip
 
 
-def belt_map(
-    system: System, wall_speed: ArrayLike, beta: ArrayLike, mu: ArrayLike = 1.0, units: Units | None = None
-) -> xr.Dataset:
-    """All motions of one mass on a belt, without a load.
+class Given(NamedTuple):
+    """A system on a belt with checked axes."""
 
-    Parameters
-    ----------
-    system : System
-        One mass with one rigid contact with the ground; the load is left out.
-    wall_speed : array_like, shape (n_v,)
-        Speeds of the belt over omega_1 P/k1 [-], > 0, increasing.
-    beta : array_like, shape (n_beta,)
-        Kinetic friction force just above speed 0 over P [-], >= 0, increasing.
-    mu : array_like, shape (n_mu,)
-        Ratios of static to kinetic friction [-], >= 1, increasing.
-    units : Units, optional
-        Reference values; then speeds may be texts such as "0.2 m/s", and beta forces.
+    system: System
+    belts: Belts
+    axes: dict[str, np.ndarray]  # mu, wall_speed, beta
+    units: Units | None
+    scales: Scales
+
+
+def checked(
+    system: System, wall_speed: ArrayLike, beta: ArrayLike, mu: ArrayLike, units: Units | None
+) -> Given:
+    """Check a system and axes of motions without a load.
 
     Raises
     ------
     InputError
-        An axis is invalid, or the system is another one.
+        An axis is invalid, or motions without a load are not offered for the system.
     """
-    law = _law_of(system)
+    belts = belts_of(system)
     scales = scales_of(units, system)
     require(scales, wall_speed=("velocity", wall_speed), beta=("force", beta))
     speed = checks.axis(ratios(wall_speed, "wall_speed", "velocity", scales), "wall_speed", least=0.0)
@@ -55,53 +56,111 @@ def belt_map(
     beta = checks.axis(ratios(beta, "beta", "force", scales), "beta", least=0.0)
     mu = checks.axis(mu, "mu", least=1.0)
     checks.cells(mu.size, speed.size, beta.size)
-    found = portraits(law, system.zeta, mu, speed, beta)
-    values = {name: getattr(found, field) for name, field in _FIELDS.items()}
-    values["cycle_speed_lim"] = cycle_speed_limits(law, system.zeta, mu, beta)
-    # one mass: steady sliding is stable where 2 zeta + beta g' > 0, and then (Q) holds too
-    values |= dict.fromkeys(("beta_slope_lim", "beta_slope_certificate"), np.float64(2.0 * system.zeta))
-    axes = {"mu": mu, "wall_speed": speed, "beta": beta}
-    return xr.Dataset(
-        {name: _variable(name, one) for name, one in values.items()},
-        {name: _variable(name, one) for name, one in axes.items()},
-        {"title": "Motions on a belt without a load", "system": system.describe()},
-    )
+    return Given(system, belts, {"mu": mu, "wall_speed": speed, "beta": beta}, units, scales)
 
 
-def _variable(name: str, values: np.ndarray) -> xr.Variable:
-    return xr.Variable(BELTS[name].dims, values, attributes(BELTS[name]))
+def belt_map(
+    system: System, wall_speed: ArrayLike, beta: ArrayLike, mu: ArrayLike = 1.0, units: Units | None = None,
+    threads: int | None = None, progress: Progress | None = None,
+) -> xr.Dataset:  # fmt: skip
+    """All motions on a belt without a load.
 
-
-def _law_of(system: System) -> Law:
-    """Segments of the law of the only contact.
+    Parameters
+    ----------
+    system : System
+        Its loads are left out; see `belts_of`.
+    wall_speed : array_like, shape (n_v,)
+        Speeds of the belt over omega_1 P/k1 [-], > 0, increasing.
+    beta : array_like, shape (n_beta,)
+        Kinetic friction force just above speed 0 over P [-], >= 0, increasing.
+    mu : array_like, shape (n_mu,)
+        Ratios of static to kinetic friction [-], >= 1, increasing.
+    units : Units, optional
+        Reference values; then speeds may be texts such as "0.2 m/s", and beta forces.
+    threads, progress : see `sweep`
 
     Raises
     ------
     InputError
-        The system is not one mass with one rigid contact with the ground and nothing else.
+        An axis is invalid, or the system is another one.
     """
-    if system.n != 1:
+    given = checked(system, wall_speed, beta, mu, units)
+    if progress is not None and not callable(progress):
+        raise InputError("progress", f"must be a function of two numbers; got {checks.one_line(progress)}")
+    if system.n > 1:
+        values = structure_values(system, given.belts, given.axes, threads, progress)
+    else:
+        values = _one_mass_values(given, threads, progress)
+    if len(given.belts.groups) == 1:
+        values |= limits_of_motions(given)
+    title = "Motions on a belt without a load"
+    return belt_dataset("sweep", title, system, given.axes, values, units, given.scales)
+
+
+def belt_boundaries(
+    system: System, wall_speed: ArrayLike, beta: ArrayLike, mu: ArrayLike = 1.0, units: Units | None = None
+) -> xr.Dataset:
+    """The limits of `belt_map` alone."""
+    given = checked(system, wall_speed, beta, mu, units)
+    title = "Limits of motions on a belt without a load"
+    values = limits_of_motions(given)
+    return belt_dataset("boundaries", title, system, given.axes, values, units, given.scales)
+
+
+def limits_of_motions(given: Given) -> dict[str, np.ndarray]:
+    """Limits over mu, belt speed and beta; those of one contact or one mass only where there is one."""
+    belts, axes = given.belts, given.axes
+    if len(belts.groups) > 1:
         raise InputError(
-            f"cannot compute motions without a load of {system.n} masses: only of one; "
-            f"for growth about steady sliding see beta_slope_lim of boundaries"
+            "cannot compute limits of motions without a load of several contacts: they are those of one; "
+            "compute the map"
         )
-    groups = system.contact_system.groups
-    one = groups[0].first
-    excluded = {
-        "matrices": system.matrices is not None,
-        "excitation": system.excitation != "force",
-        "load_offset": bool(np.any(system.contact_system.offset)),
-        "more than one contact": len(groups) > 1 or len(groups[0].members) > 1,
-        f"kind = {one.kind}": one.kind != "fixed-wall",
-        "stiffness": one.stiffness is not None,
-        "normal_load": bool(one.nu) or one.normal_record is not None,
-        "a wall_speed or wall_velocity of the contact": bool(one.wall_speed or one.wall_velocity),
-        "force": one.force is not None,
-        "mu of the contact": one.mu is not None,
-        "ratio": one.ratio not in (None, 1.0),
+    slope = slope_limits_of(given.system, belts)
+    kinetic, ratio = friction_of(belts, axes["beta"], axes["mu"])
+    values = {
+        "beta_slope_lim": np.array(slope.limit),
+        "beta_slope_certificate": np.array(slope.certificate),
+        "beta_sliding_lim": sliding_limits(belts, slope.limit, axes["wall_speed"], given.system.n == 1),
+        "sliding_speed_lim": speed_limits(belts, slope.limit, kinetic),
     }
-    for name, given in excluded.items():
-        if given:
-            raise InputError(f"cannot compute motions without a load with {name}; omit it")
-    law = one.law or FrictionLaw()
+    if given.system.n == 1:
+        limits = cycle_speed_limits(law_of(belts), given.system.zeta, ratio, kinetic)
+        values["cycle_speed_lim"] = limits
+    return values
+
+
+def _one_mass_values(given: Given, threads: int | None, progress: Progress | None) -> dict[str, np.ndarray]:
+    """Variables of all cells of one mass."""
+    axes, belts = given.axes, given.belts
+    found = empty_portraits((axes["mu"].size, axes["wall_speed"].size, axes["beta"].size))
+    kinetic, ratio = friction_of(belts, axes["beta"], axes["mu"])
+    axes_of_cells = (ratio, axes["wall_speed"], kinetic)
+    run(portrait_jobs(law_of(belts), given.system.zeta, axes_of_cells, found), threads, progress)
+    if belts.share[0] < 0.0:  # the mirror image
+        found = found._replace(highest=-found.lowest, lowest=-found.highest)
+    values = {name: getattr(found, field) for name, field in _FIELDS.items()}
+    return values | {name: values[name][..., np.newaxis] for name in ("x_max", "x_min")}
+
+
+def friction_of(belts: Belts, beta: np.ndarray, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Kinetic friction (n_beta,) and static over kinetic friction (n_mu,) of the only contact.
+
+    Raises
+    ------
+    InputError
+        Parallel contacts have different ratios.
+    """
+    group = belts.groups[0]
+    ratios_of = [np.broadcast_to(one.static_ratio(mu), mu.shape) for one in group.members]
+    if any((one != ratios_of[0]).any() for one in ratios_of):
+        raise InputError(
+            "contacts", "must have one mu where they are parallel, without a load; got different ones"
+        )
+    kinetic = np.broadcast_to(group.friction(beta, 1.0)[0], beta.shape)
+    return np.ascontiguousarray(kinetic, float), np.ascontiguousarray(ratios_of[0], float)
+
+
+def law_of(belts: Belts) -> Law:
+    """Segments of the law of the only contact."""
+    law = belts.laws[0]
     return np.array(law.speed), np.array(law.factor), np.array(law.slopes)

@@ -59,6 +59,14 @@ ONE_WAY_LABEL, ONE_WAY_HATCH = "one-way sliding", "---"
 #: Number of classes, including cells not yet computed and one-way sliding.
 COUNT = ONE_WAY + 1
 
+#: Motions on a belt without a load, by regime.
+NO_LOAD = {
+    regimes.UNRESOLVED: CLASSES[UNRESOLVED],
+    regimes.STEADY_SLIDING: Look("steady sliding", CLASSES[CONTINUOUS].colour),
+    regimes.STICK_SLIP_CYCLE: Look("stick-slip cycle", CLASSES[ONE].colour),
+    regimes.CYCLE_WITHOUT_STOPS: Look("cycle without stops", "#48b2d1"),
+}
+
 #: Hatching marks several possible regimes in all pictures.
 HATCH = "////"
 HATCH_COLOUR = "#404040"
@@ -96,6 +104,18 @@ BORDER_OF_EXISTENCE: LineStyle = {
     "linewidth": 0.8,
     "linestyle": (0, (5, 1.5)),
     "label": "ends of periodic motions (not of the basins of a start)",
+}
+
+CYCLE_SPEED: LineStyle = {
+    "color": "black",
+    "linewidth": 1.3,
+    "label": "largest belt speed with a stick-slip cycle",
+}
+SLIDING_LIMIT: LineStyle = {
+    "color": "black",
+    "linewidth": 1.3,
+    "linestyle": (0, (4, 2)),
+    "label": "friction at which steady sliding loses stability",
 }
 
 #: Colours of two contacts, 3 times the state of the first plus that of the second: it sticks, sticks and

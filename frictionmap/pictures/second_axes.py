@@ -15,6 +15,7 @@ _NAMES = {
     "length": "amplitude",
     "work": "work",
     "time": "time",
+    "velocity": "belt speed",
 }
 
 
@@ -37,6 +38,11 @@ def on_the_right(ax: Axes, ds: xr.Dataset, measure: str, name: str = "") -> None
     """Add an axis of forces, lengths or work right of a panel whose limits are set; `name` is its label."""
     largest = max(abs(limit) for limit in ax.get_ylim())
     _add_second_axis(ax, ds, "y", measure, name or _NAMES[measure], largest)
+
+
+def velocity_on_top(ax: Axes, ds: xr.Dataset) -> None:
+    """Add an axis of belt speeds above a panel whose lower axis has its limits."""
+    _add_second_axis(ax, ds, "x", "velocity", _NAMES["velocity"], max(abs(limit) for limit in ax.get_xlim()))
 
 
 def length_on_top(ax: Axes, ds: xr.Dataset, name: str) -> None:

@@ -22,6 +22,7 @@ _MAKERS = {
     "design": "the functions of design return",
     "history": "history returns, over record, scale, mu and beta",
     "spectrum": "spectrum returns, over period",
+    "belt": "sweep returns, over mu, wall_speed and beta",
 }
 _DRAWN_BY = {
     "map": "plot_regimes",
@@ -33,6 +34,7 @@ _DRAWN_BY = {
     "design": "plot_design",
     "history": "plot_history",
     "spectrum": "plot_spectrum",
+    "belt": "plot_belt",
 }
 
 #: Options that only some functions take.

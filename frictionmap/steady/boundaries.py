@@ -6,11 +6,13 @@ from numpy.typing import ArrayLike
 from .. import checks
 from ..datasets.physical import with_units
 from ..datasets.variables import stamp
+from ..errors import InputError
 from ..model.system import System
+from ..no_load.sweep import belt_boundaries
 from ..solvers.choose import engine_of
 from ..units.axes import KINDS, ratios
 from ..units.scales import Units, scales_of
-from .configured import Configured, system_and_axes
+from .configured import Configured, belt_speeds, system_and_axes
 from .refinement import boundary_check
 
 
@@ -20,6 +22,8 @@ def boundaries(
     mu: ArrayLike | None = None,
     *,
     units: Units | None = None,
+    wall_speed: ArrayLike | None = None,
+    beta: ArrayLike | None = None,
 ) -> xr.Dataset:
     """Compute the boundaries of the regimes over frequency.
 
@@ -34,6 +38,8 @@ def boundaries(
         Ratios of static to kinetic friction [-], >= 1, increasing; default: 1.
     units : Units, optional
         Reference values that convert ratios to Hz and N, as in `sweep`; r may then be frequencies.
+    wall_speed, beta : array_like, shapes (n_v,), (n_beta,)
+        In the place of r, without a load: belt speeds and friction, as in `sweep`.
 
     Returns
     -------
@@ -56,6 +62,9 @@ def boundaries(
         are listed, from the highest down, and those of masses for up to 12 masses; a variable without points
         is omitted.  `frictionmap.features` computes all points.
 
+        With wall_speed: `beta_slope_lim`, `beta_slope_certificate`, `beta_sliding_lim` on wall_speed,
+        `sliding_speed_lim` on beta, and for one mass `cycle_speed_lim` on (mu, beta), theory.md 18.
+
         Where C couples modes, `beta_lim_modal` and `peak_threshold`, which treat modes separately, are NaN.
 
     Raises
@@ -70,6 +79,11 @@ def boundaries(
     >>> ds.beta_stick.values
     array([[0.25, 4.  ]])
     """
+    if (speeds := belt_speeds(system, wall_speed, r)) is not None:
+        given = system_and_axes(system, None, beta, mu, units, needs=("beta",))
+        return belt_boundaries(given.system, speeds, given.beta, given.mu, given.units)
+    if beta is not None:
+        raise InputError("cannot use", "beta", "without wall_speed: boundaries are over r and mu; omit it")
     system, r, _, mu, units, _ = system_and_axes(system, r, None, mu, units, needs=("r",))
     scales = scales_of(units, system)
     r = checks.axis(ratios(r, "r", KINDS["r"], scales), "r", least=0.0, most=checks.LARGEST_RATIO)

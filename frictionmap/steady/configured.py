@@ -33,6 +33,9 @@ class Configured(Protocol):
     def variations(self) -> Variations | None: ...
     @property
     def units(self) -> Units | None: ...
+    @property
+    def wall_speed(self) -> np.ndarray | None: ...
+    def refuse_belt(self, what: str) -> None: ...
 
 
 class Asked(NamedTuple):
@@ -59,6 +62,8 @@ def system_and_axes(
     """
     if not isinstance(system, System) and isinstance(system, Configured):
         config = system
+        if "r" in needs:
+            config.refuse_belt("compute this")
         return Asked(
             config.system,
             config.r if r is None else r,
@@ -72,3 +77,18 @@ def system_and_axes(
         if value is None and name in needs:
             raise InputError(name, "must be given with a system, such as [0.5, 1.0]; got nothing")
     return Asked(system, r, beta, 1.0 if mu is None else mu, units, None)  # type: ignore[arg-type]
+
+
+def belt_speeds(system: object, wall_speed: ArrayLike | None, r: object) -> ArrayLike | None:
+    """Belt speeds in the place of r, from an argument or a configuration; None under a load.
+
+    Raises
+    ------
+    InputError
+        Both are given.
+    """
+    own = getattr(system, "wall_speed", None) if not isinstance(system, System) else None
+    found = own if wall_speed is None else wall_speed
+    if found is not None and r is not None:
+        raise InputError("cannot use", "r", "with wall_speed: there is no load; omit one of them")
+    return found

@@ -21,7 +21,7 @@ from ..single.maps import checked_axes
 from ..solvers.choose import engine_of
 from ..units.dimensions import axes_in_ratios
 from ..units.scales import Units, scales_of
-from .configured import Configured, system_and_axes
+from .configured import Configured, belt_speeds, system_and_axes
 from .refinement import reduction_check
 
 
@@ -98,9 +98,10 @@ def sweep(
     >>> ds.stops_per_cycle.values
     array([[[ 0.,  2., nan]]], dtype=float32)
     """
-    if wall_speed is not None:
-        unused = {"r": r, "solver": solver, "axes": axes, **settings}
-        return _without_load(system, wall_speed, (beta, mu), units, unused)
+    if (speeds := belt_speeds(system, wall_speed, r)) is not None:
+        _refuse_of_loads({"solver": solver, "axes": axes, **settings})
+        given = system_and_axes(system, None, beta, mu, units, needs=("beta",))
+        return belt_map(given.system, speeds, given.beta, given.mu, given.units, threads, progress)
     given = system_and_axes(system, r, beta, mu, units)
     if given.config is not None:
         solver = solver or given.config.solver
@@ -109,18 +110,11 @@ def sweep(
     return swept(given.system, grid, merged(solver, settings), axes, threads, progress, given.units)
 
 
-def _without_load(
-    system: System | Configured, wall_speed: ArrayLike, others: tuple[ArrayLike | None, ArrayLike | None],
-    units: Units | None, unused: Mapping[str, Any],
-) -> xr.Dataset:  # fmt: skip
-    """Compute the dataset of `sweep` over belt speeds; `unused`: arguments that must not be given."""
-    for name, value in unused.items():
+def _refuse_of_loads(given: Mapping[str, Any]) -> None:
+    """Refuse arguments that have no meaning without a load."""
+    for name, value in given.items():
         if value is not None:
             raise InputError("cannot use", name, "with wall_speed: there is no load; omit one of them")
-    given = system_and_axes(system, None, *others, units, needs=("beta",))
-    if given.config is not None:
-        raise InputError("cannot use", "wall_speed", "with a configuration; give its system and the axes")
-    return belt_map(given.system, wall_speed, given.beta, given.mu, given.units)
 
 
 def swept(

@@ -167,9 +167,10 @@ _HANDY = {
     "length": {"um": 0.0, "mm": 1e-4, "m": 1.0},
     "time": {"ms": 0.0, "s": 1.0},
     "work": {"mJ": 0.0, "J": 0.1},
+    "velocity": {"mm/s": 0.0, "m/s": 1.0},
 }
 
 
 def handy_unit(size: float, measure: str) -> str:
-    """The unit of frequency, force, length, time or work in which a size in SI units is a handy number."""
+    """The unit of frequency, force, length, time, work or velocity in which a size in SI units is handy."""
     return [unit for unit, least in _HANDY[measure].items() if size >= least][-1]

@@ -32,7 +32,7 @@ FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
 
 
 @inner_kernel
-def _first_event(problem, row, friction, motion, end):
+def next_event(problem, row, friction, motion, end):
     """Return (x, contact, side) of the first event in the present step up to `end`; x = NONE without one."""
     found, contact, side = NONE, -1, 0
     for j in range(motion.sense.size):
@@ -68,7 +68,7 @@ def _settle(problem, row, friction, tau, motion, box, x, contact, side):
     problem, row, friction : Problem, Row, Friction
     tau : phase of the event
     motion, box : Motion, scratch of `settle`
-    x, contact, side : the event, see `_first_event`
+    x, contact, side : the event, see `next_event`
     """
     arrived, released = (contact, -1) if side == 0 else (-1, contact)
     if not settle(problem, row, friction, tau, motion, box, arrived, released):
@@ -120,7 +120,7 @@ def pass_event(problem, row, friction, tau, motion, box, counts, event, derive):
     problem, row, friction, motion : Problem, Row, Friction, Motion; the state is that of the event
     tau : phase of the event
     box, counts : scratch of `settle`, counters
-    event : (x, contact, side) of `_first_event`
+    event : (x, contact, side) of `next_event`
     derive : whether the derivatives are carried on; they are those of just before the event
 
     Returns
@@ -197,7 +197,7 @@ def _cross(problem, row, friction, begin, interval, length, motion, box, counts,
     for _ in range(_MOST_EVENTS):
         rest = length - x
         expand(problem, row, friction, tau, interval if x == 0.0 else -1, motion, record.active[0] != 0)
-        event = _first_event(problem, row, friction, motion, rest)
+        event = next_event(problem, row, friction, motion, rest)
         step = min(event[0], rest)
         if record.active[0] != 0:
             record_step(problem, row, motion, step, record)
@@ -231,7 +231,7 @@ def prepare(problem, row, friction, motion):
 
 
 @kernel
-def _forget_tables(problem, row, friction):
+def forget_tables(problem, row, friction):
     """Forget derivatives of motions that were under another friction, where they depend on it."""
     if not has_law(problem):
         return
@@ -269,7 +269,7 @@ def follow(problem, row, friction, part, motion, box, counts, record, derive):
     set_channels(problem, row, SECTION + part * intervals * h, part * intervals, motion)
     stop_exactly(problem, row, motion)
     set_segments(problem, row, motion)
-    _forget_tables(problem, row, friction)
+    forget_tables(problem, row, friction)
     if derive:
         hold_tangent(problem, row, motion)
     glides = record.active[0] == 0 and can_glide(problem, row)

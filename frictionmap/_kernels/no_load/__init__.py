@@ -1,4 +1,4 @@
-"""One mass on a belt without a load: its phases are damped oscillations, and all its cycles are found.
+"""Motions on a belt without a load: all cycles of one mass, whose phases are damped oscillations; structures.
 
 Time is counted over 1/omega_1.  x'' + 2 zeta x' + x = -f, and w = x' - v is the velocity over the belt.
 
@@ -10,5 +10,6 @@ orbit     one turn of the motion through its bands, forwards or backwards in tim
 cycles    all cycles without stops, as fixed points of the map from a maximum to the next one
 portrait  steady sliding, the stick-slip cycle and the cycles without stops of one cell
 fill      portraits of all cells; the fastest belt with a stick-slip cycle
+ride      motions of structures: from maximum to maximum, until they are back; flights over a time
 ========  ====================================================================================
 """

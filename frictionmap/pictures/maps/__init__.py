@@ -12,6 +12,7 @@ regime_map       maps of regimes and stops
 quantity_map     maps of amplitudes, work and other numbers
 boundary_map     maps of the boundaries alone
 share_map        maps of probabilities
+belt_map         regimes over belt speed and friction, without a load
 force_map        two contacts at one frequency, friction against friction
 ===============  =======================================================
 """

@@ -79,8 +79,8 @@ Curves = dict[str, tuple[np.ndarray, np.ndarray]]
 _FRAME = 0.85
 
 #: Stripes: distance and width [inch].
-_SPACING, _STRIPE = 0.085, 0.012
-_HATCHING = int(HATCH_COLOUR[1:3], 16), int(HATCH_COLOUR[3:5], 16), int(HATCH_COLOUR[5:7], 16)
+SPACING, STRIPE = 0.085, 0.012
+HATCHING = int(HATCH_COLOUR[1:3], 16), int(HATCH_COLOUR[3:5], 16), int(HATCH_COLOUR[5:7], 16)
 
 
 @dataclass(frozen=True)
@@ -142,7 +142,7 @@ class RegimeImage(CellImage):
             _hatch_one_way(image, raster == ONE_WAY, inch)
         if self.cells.several is not None:
             where = rasterise(self.cells.several, *edges, size, 2) == 1
-            shade(image, stripes(where.shape, _SPACING * inch, _STRIPE * inch) * where, _HATCHING)
+            shade(image, stripes(where.shape, SPACING * inch, STRIPE * inch) * where, HATCHING)
         return image
 
     def colours(self) -> np.ndarray | None:
@@ -155,7 +155,7 @@ class RegimeImage(CellImage):
 def _hatch_one_way(image: np.ndarray, where: np.ndarray, inch: float) -> None:
     """Paint one-way sliding white with level stripes, also where cells not computed are dotted."""
     image[where.T] = 255
-    shade(image, level_stripes(where.shape, _SPACING * inch, _STRIPE * inch) * where, _HATCHING)
+    shade(image, level_stripes(where.shape, SPACING * inch, STRIPE * inch) * where, HATCHING)
 
 
 def _name_regions(ax: Axes, cells: Cells, curves: Iterable[tuple[np.ndarray, np.ndarray]]) -> None:

@@ -1,0 +1,114 @@
+"""Standard form, tables and summaries of motions without a load."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .. import regimes
+from ..datasets.belt_labels import AXES, BELTS, CELL, MEASURES, STATUSES
+from ..datasets.labels import attributes, in_si
+from ..datasets.schema import checked_values
+from ..errors import InputError
+
+
+def belts_form(ds: xr.Dataset) -> xr.Dataset:
+    """Motions without a load in the form that they were made in; their structure has been checked.
+
+    Raises
+    ------
+    InputError
+        A value is invalid, or an axis has a wrong order; the message names the variable.
+    """
+    ds = ds.set_coords([name for name in AXES if name in ds.data_vars])
+    ds = ds.expand_dims([dim for dim in (*CELL, "dof") if dim in ds.coords and dim not in ds.dims])
+    variables = {}
+    for name, label in BELTS.items():
+        if name not in ds.variables:
+            continue
+        dims = tuple(dim for dim in label.dims if dim in ds[name].dims)
+        extra = [
+            dim for dim in ds[name].dims if dim not in label.dims and dim not in ("contact", *CELL, "dof")
+        ]
+        if extra:
+            raise InputError(f"{name} must have the dimensions {', '.join(dims)}; got also {extra[0]}")
+        values = ds[name].variable.transpose(..., *dims)
+        variables[name] = xr.Variable(
+            values.dims, checked_values(name, values.values, "belt"), ds[name].attrs or attributes(label)
+        )
+    for name in CELL:
+        if name in variables and (np.diff(variables[name].values) <= 0.0).any():
+            raise InputError(f"{name} must be strictly increasing; got {variables[name].values.tolist()[:6]}")
+    coords = {name: variables.pop(name) for name in AXES if name in variables}
+    return xr.Dataset(variables, coords, ds.attrs)
+
+
+def is_in_si(name: str) -> bool:
+    """Whether a variable is one in SI units beside its ratio."""
+    return any(name == in_si(ratio, kind) for kind, names in MEASURES.items() for ratio in names)
+
+
+def describe_belts(ds: xr.Dataset) -> list[str]:
+    """Describe motions without a load: cells by regime, several motions, and the limits, in lines."""
+    return list(_lines(ds))
+
+
+def _lines(ds: xr.Dataset) -> Iterator[str]:
+    if "regime" in ds:
+        codes = regimes.NO_LOAD_REGIMES
+        counts = [(code.name.replace("_", " "), int((ds["regime"] == code.value).sum())) for code in codes]
+        words = ", ".join(f"{count:,} {name}" for name, count in counts if count)
+        yield f"{ds['regime'].size:,} cells ({words})"
+    if "also_reachable" in ds:
+        flags = ds["also_reachable"].values
+        several = int(((flags & (flags - 1)) != 0).sum())
+        if several:
+            yield f"{several:,} cells have several stable motions: the initial state decides"
+    if "status" in ds:
+        for code in STATUSES[1:]:
+            count = int((ds["status"] == code.value).sum())
+            if count:
+                yield f"{count:,} cell{'s' * (count != 1)} {code.name}: {code.advice}"
+    for name, words in (
+        ("cycle_speed_lim", "belt speed above which there is no stick-slip cycle"),
+        ("sliding_speed_lim", "belt speed above which steady sliding is stable"),
+        ("beta_slope_lim", "beta times slope of the fall at which it loses stability"),
+    ):
+        if name in ds:
+            yield f"{words}: {_range(ds, name)}"
+
+
+def _range(ds: xr.Dataset, name: str) -> str:
+    """The value of a limit, or its range, in SI units where they are there."""
+    beside = f"{name}_m_s"
+    values, unit = (ds[beside].values, " m/s") if beside in ds else (ds[name].values, "")
+    low, high = (float(f(values)) for f in (np.min, np.max))
+    return f"{low:.6g}{unit}" if low == high else f"{low:.6g} to {high:.6g}{unit}"
+
+
+def belt_table(ds: xr.Dataset) -> Any:
+    """Data frame with a row for every cell; what every mass or contact has is one column for each."""
+    columns: dict[str, xr.DataArray] = {}
+    for name, one in ds.data_vars.items():
+        words = _decoded(one)
+        parts = [str(dim) for dim in one.dims if dim in ("dof", "contact")]
+        if not parts:
+            columns[str(name)] = words
+            continue
+        for k in range(one.sizes[parts[0]]):
+            columns[f"{name}_{k + 1}"] = words.isel({parts[0]: k}, drop=True)
+    dims = [dim for dim in CELL if dim in ds.dims]
+    beside = [str(name) for name in ds.coords if name not in dims]
+    return xr.Dataset(columns).drop_vars(beside, errors="ignore").to_dataframe(dim_order=dims)
+
+
+def _decoded(one: xr.DataArray) -> xr.DataArray:
+    """Codes by their names."""
+    label = BELTS[str(one.name)]
+    if not label.codes or label.flags == "flag_masks":
+        return one
+    words = one.astype(object)
+    for code in label.codes:
+        words = words.where(one != code.value, code.name)
+    return words

@@ -423,7 +423,7 @@ map good.toml --threads 1.5
 map good.toml --set
     frictionmap map: argument --set: expected one argument (see frictionmap map --help)
 map good.toml --set grid.q=1
-    unknown key 'grid.q'; valid: r, beta, friction_coefficient, mu
+    unknown key 'grid.q'; valid: r, beta, friction_coefficient, mu, wall_speed
 map good.toml --set solver.outputs=regime
     solver.outputs must be a list of names; got 'regime'
 map good.toml --set solver.steps=many

@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     from .plot import (
         animate,
         plot_belt,
+        plot_belt_motion,
         plot_boundaries,
         plot_curves,
         plot_design,
@@ -128,6 +129,7 @@ __all__ = [
     "load_config",
     "open",
     "plot_belt",
+    "plot_belt_motion",
     "plot_boundaries",
     "plot_curves",
     "plot_design",
@@ -175,6 +177,7 @@ _HOME = {
     "load_config": "files.config",
     "open": "files.opening",
     "plot_belt": "plot",
+    "plot_belt_motion": "plot",
     "plot_boundaries": "plot",
     "plot_curves": "plot",
     "plot_design": "plot",

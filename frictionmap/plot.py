@@ -25,6 +25,7 @@ from .pictures.maps.quantity_map import plot_quantity, quantities_of
 from .pictures.maps.regime_map import plot_regimes
 from .pictures.maps.share_map import plot_shares
 from .pictures.motions.animation import animate
+from .pictures.motions.belt_cycle import plot_belt_motion
 from .pictures.motions.history import plot_response
 from .pictures.motions.in_time import plot_history, plot_spectrum
 from .pictures.motions.orbit import plot_orbit
@@ -43,6 +44,7 @@ __all__ = [
     "draw",
     "pictured",
     "plot_belt",
+    "plot_belt_motion",
     "plot_boundaries",
     "plot_curves",
     "plot_design",
@@ -126,7 +128,7 @@ def draw(
         "design": {"design": plot_design},
         "history": {"history": plot_history, "energies": plot_energies},
         "spectrum": {"spectrum": plot_spectrum, "incremental": plot_incremental},
-        "belt": {"regimes": plot_belt},
+        "belt": {"motion": plot_belt_motion} if "time" in ds.coords else {"regimes": plot_belt},
     }
     valid = drawn_of[what]
     if log:

@@ -179,9 +179,36 @@ def _response(options: Options, config: "Config", output: "Output") -> None:
     from ..steady.response import response
 
     mu = _one_mu(config) if options.mu is None else options.mu
+    if config.wall_speed is not None or options.wall_speed is not None:
+        _belt_response(options, config, output, mu)
+        return
+    if options.r is None:
+        raise InputError("--r must be given, such as --r 0.5; got nothing")
     ds = response(config.system, options.r, options.beta, mu, solver=config.solver, units=config.units)
     output.fill(_finish(ds, config, options))
     _report(options, output, describe_response(ds))
+
+
+def _belt_response(options: Options, config: "Config", output: "Output", mu: float) -> None:
+    """Compute a motion on a belt without a load in time."""
+    from ..files.belts import describe_belts
+    from ..steady.response import POINTS, response
+
+    if config.wall_speed is None:
+        raise InputError("cannot use --wall-speed with grid.r: it is for [grid] wall_speed; give --r instead")
+    if options.r is not None or options.wall_speed is None:
+        raise InputError("--wall-speed must be given with [grid] wall_speed, in the place of --r; got --r")
+    ds = response(
+        config.system,
+        None,
+        options.beta,
+        mu,
+        wall_speed=options.wall_speed,
+        points=POINTS,
+        units=config.units,
+    )
+    output.fill(_finish(ds, config, options))
+    _report(options, output, *describe_belts(ds))
 
 
 def _one_mu(config: "Config") -> float:
@@ -659,7 +686,7 @@ def _check_text(arguments: Sequence[str]) -> None:
 
 
 #: Commands that need a load, and what they do.
-_UNDER_LOADS = {"curves": "compute response curves", "response": "compute a response"}
+_UNDER_LOADS = {"curves": "compute response curves"}
 
 #: Functions of the commands; other commands compute a configuration.
 _COMMANDS: dict[str, Callable[[Options], None]] = {

@@ -4,6 +4,7 @@ import numpy as np
 
 from .. import regimes
 from .labels import BESIDE, COORDINATES, Label, in_si, si_units
+from .motion_labels import SENSES
 
 CELL = ("mu", "wall_speed", "beta")
 
@@ -56,6 +57,7 @@ _RATIOS = {
     "dof": COORDINATES["dof"],
     "contact": BESIDE["contact"],
     "contact_name": BESIDE["contact_name"],
+    "time": Label(np.float64, "time since the beginning, over 1/omega_1", ("time",), least=0.0),
     "friction_force": BESIDE["friction_force"],
     "friction_coefficient": BESIDE["friction_coefficient"],
     "regime": Label(
@@ -79,6 +81,11 @@ _RATIOS = {
         "largest displacement, in the direction of the belt, in the least unstable cycle, over P/k1",
         "NaN without one; a smaller vibration ends in steady sliding if that is stable",
     ),
+    "x": _real("displacement of the masses, over P/k1", "", ("dof", "time")),
+    "v": _real("velocity of the masses, over omega_1 P/k1", "", ("dof", "time")),
+    "z": _real("motion in the contact, over P/k1", "", ("time",)),
+    "friction": _real("friction force against the motion in the contact, over P", "", ("time",)),
+    "direction": Label(np.int8, "direction of the slide over the wall", ("time",), SENSES),
     "cycle_speed_lim": _real(
         "largest belt speed with a stick-slip cycle, over omega_1 P/k1", "0: none has one; infinite: any has",
         ("mu", "beta"), 0.0,
@@ -103,10 +110,10 @@ _RATIOS = {
 
 #: Variables and axes with a counterpart in SI units where the reference values are known, by measure.
 MEASURES = {
-    "length": ("x_max", "x_min", "unstable_maximum"),
-    "time": ("cycle_period",),
-    "velocity": ("wall_speed", "cycle_speed_lim", "sliding_speed_lim"),
-    "force": ("beta_sliding_lim",),
+    "length": ("x_max", "x_min", "unstable_maximum", "x", "z"),
+    "time": ("cycle_period", "time"),
+    "velocity": ("wall_speed", "v", "cycle_speed_lim", "sliding_speed_lim"),
+    "force": ("beta_sliding_lim", "friction"),
     "frequency": ("growth_frequency",),
 }
 
@@ -120,7 +127,20 @@ BELTS = _RATIOS | {
 }
 
 #: Variables that have one value per contact where there are several.
-OF_CONTACTS = ("stops_per_cycle", "turns_per_cycle", "stuck_fraction", "segment_crossings")
+OF_CONTACTS = (
+    "stops_per_cycle", "turns_per_cycle", "stuck_fraction", "segment_crossings", "z", "friction", "direction",
+    "z_m", "friction_N",
+)  # fmt: skip
 
 #: Coordinates; the others are variables.
-AXES = (*CELL, "dof", "contact", "contact_name", "wall_speed_m_s", "friction_force", "friction_coefficient")
+AXES = (
+    *CELL,
+    "dof",
+    "time",
+    "time_s",
+    "contact",
+    "contact_name",
+    "wall_speed_m_s",
+    "friction_force",
+    "friction_coefficient",
+)

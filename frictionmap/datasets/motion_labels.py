@@ -29,7 +29,7 @@ _KINDS = (
     regimes.Code(2, "turn", "the sense of a slide changes without a stop"),
 )
 
-_SENSES = (
+SENSES = (
     regimes.Code(-1, "sliding_down", "the contact slides towards smaller z"),
     regimes.Code(0, "sticking", "the contact sticks, or its spring does not slip"),
     regimes.Code(1, "sliding_up", "the contact slides towards larger z"),
@@ -66,7 +66,7 @@ MOTIONS = {
     "acceleration": _real(f"absolute acceleration of the masses, {_A}", "dof", "time"),
     "z": _real(f"motion in the contact, {_X}", "time"),
     "friction": _real(f"friction force against the motion in the contact, {_F}", "time"),
-    "direction": Label(np.int8, "direction of the motion in the contact", (*CELL, "time"), _SENSES),
+    "direction": Label(np.int8, "direction of the motion in the contact", (*CELL, "time"), SENSES),
     "y": _real(f"displacement of the slider of an elastic contact, {_X}", "time"),
     "drive": _real("the record: a force over P, or the acceleration of the base over omega_1^2 P/k1", "time"),
     "event_time": _real("time of the event, over 1/omega_1", "event", comment="padded with NaN"),

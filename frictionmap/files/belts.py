@@ -22,7 +22,8 @@ def belts_form(ds: xr.Dataset) -> xr.Dataset:
         A value is invalid, or an axis has a wrong order; the message names the variable.
     """
     ds = ds.set_coords([name for name in AXES if name in ds.data_vars])
-    ds = ds.expand_dims([dim for dim in (*CELL, "dof") if dim in ds.coords and dim not in ds.dims])
+    axes = () if "time" in ds.coords else (*CELL, "dof")
+    ds = ds.expand_dims([dim for dim in axes if dim in ds.coords and dim not in ds.dims])
     variables = {}
     for name, label in BELTS.items():
         if name not in ds.variables:
@@ -38,7 +39,7 @@ def belts_form(ds: xr.Dataset) -> xr.Dataset:
             values.dims, checked_values(name, values.values, "belt"), ds[name].attrs or attributes(label)
         )
     for name in CELL:
-        if name in variables and (np.diff(variables[name].values) <= 0.0).any():
+        if name in variables and variables[name].ndim and (np.diff(variables[name].values) <= 0.0).any():
             raise InputError(f"{name} must be strictly increasing; got {variables[name].values.tolist()[:6]}")
     coords = {name: variables.pop(name) for name in AXES if name in variables}
     return xr.Dataset(variables, coords, ds.attrs)
@@ -55,6 +56,9 @@ def describe_belts(ds: xr.Dataset) -> list[str]:
 
 
 def _lines(ds: xr.Dataset) -> Iterator[str]:
+    if "time" in ds.coords:
+        yield _in_words(ds)
+        return
     if "regime" in ds:
         codes = regimes.NO_LOAD_REGIMES
         counts = [(code.name.replace("_", " "), int((ds["regime"] == code.value).sum())) for code in codes]
@@ -79,6 +83,27 @@ def _lines(ds: xr.Dataset) -> Iterator[str]:
             yield f"{words}: {_range(ds, name)}"
 
 
+def _in_words(ds: xr.Dataset) -> str:
+    """One motion in a line."""
+    regime = next(one for one in regimes.NO_LOAD_REGIMES if one.value == int(ds["regime"]))
+    words = [regime.name.replace("_", " ")]
+    if np.isfinite(ds["cycle_period"]):
+        period = f"{float(ds['cycle_period_s']):.6g} s" if "cycle_period_s" in ds else ""
+        words.append(f"period {period or format(float(ds['cycle_period']), '.6g')}")
+        words.append(f"{_each(ds['stops_per_cycle'])} stops per cycle")
+        words.append(f"stuck {_each(100.0 * ds['stuck_fraction'])} % of the time")
+    lowest, highest = (ds[f"{name}_m"] if f"{name}_m" in ds else ds[name] for name in ("x_min", "x_max"))
+    unit = " m" if "x_min_m" in ds else ""
+    words += [f"x from {_each(lowest)}{unit} to {_each(highest)}{unit}"]
+    words += [f"growth of small vibrations about steady sliding {float(ds['growth']):.4g}"]
+    status = next(one for one in STATUSES if one.value == int(ds["status"]))
+    return ", ".join([*words, *([f"{status.name}: {status.advice}"] if status.value else [])])
+
+
+def _each(values: xr.DataArray) -> str:
+    return ", ".join(f"{value:.5g}" for value in np.atleast_1d(values.values))
+
+
 def _range(ds: xr.Dataset, name: str) -> str:
     """The value of a limit, or its range, in SI units where they are there."""
     beside = f"{name}_m_s"
@@ -90,7 +115,10 @@ def _range(ds: xr.Dataset, name: str) -> str:
 def belt_table(ds: xr.Dataset) -> Any:
     """Data frame with a row for every cell; what every mass or contact has is one column for each."""
     columns: dict[str, xr.DataArray] = {}
+    in_time = "time" in ds.coords
     for name, one in ds.data_vars.items():
+        if in_time and "time" not in one.dims:
+            continue
         words = _decoded(one)
         parts = [str(dim) for dim in one.dims if dim in ("dof", "contact")]
         if not parts:
@@ -98,8 +126,8 @@ def belt_table(ds: xr.Dataset) -> Any:
             continue
         for k in range(one.sizes[parts[0]]):
             columns[f"{name}_{k + 1}"] = words.isel({parts[0]: k}, drop=True)
-    dims = [dim for dim in CELL if dim in ds.dims]
-    beside = [str(name) for name in ds.coords if name not in dims]
+    dims = [dim for dim in ("time", *CELL) if dim in ds.dims]
+    beside = [str(name) for name in ds.coords if name not in dims and name != "time_s"]
     return xr.Dataset(columns).drop_vars(beside, errors="ignore").to_dataframe(dim_order=dims)
 
 

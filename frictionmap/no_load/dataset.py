@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from ..datasets.belt_labels import AXES, BELTS, MEASURES, OF_CONTACTS
+from ..datasets.belt_labels import AXES, BELTS, CELL, MEASURES, OF_CONTACTS
 from ..datasets.labels import attributes, in_si
 from ..datasets.physical import COEFFICIENT, scale_attributes
 from ..datasets.variables import stamp
@@ -50,9 +50,14 @@ def variable(name: str, values: np.ndarray | float) -> xr.Variable:
     """A labelled variable, or one number of an axis."""
     label = BELTS[name]
     dims = label.dims
+    if np.ndim(values) < len(dims):  # of one cell
+        dims = tuple(dim for dim in dims if dim not in CELL)
     if name in OF_CONTACTS and np.ndim(values) > len(dims):
-        dims = (*dims, "contact")
-    return xr.Variable(dims if np.ndim(values) else (), values, attributes(label))
+        dims = (*dims, "contact") if "time" not in dims else ("contact", *dims)
+    attrs = attributes(label)
+    if label.dtype is np.str_:
+        attrs.pop("units")
+    return xr.Variable(dims, values, attrs)
 
 
 def _in_si(

@@ -89,7 +89,7 @@ class Ride:
         self.belts, self.speed = belts, speed
         self.contact = int(np.flatnonzero(belts.share)[0])
         self._march = make_memory(self.problem, self.modal.phi)
-        self._flight = make_memory(self.problem, self.modal.phi)
+        self.flight = make_memory(self.problem, self.modal.phi)
         self.h = float(self._march.row.numbers[0])
         self.longest = _LONGEST * 2.0 * np.pi / np.sqrt(self.modal.squares.min()) / self.h
 
@@ -158,38 +158,39 @@ class Ride:
         for parts in range(back, 1, -1):
             if back % parts:
                 continue
-            self._put(y, senses)
-            if fly(self.problem, friction, self._flight, period / parts, False, False) < 0:
+            self.put(y, senses)
+            if fly(self.problem, friction, self.flight, period / parts, False, False) < 0:
                 continue
             end, pattern = self._taken()
             if (pattern == senses).all() and np.abs(end - y).max() <= _SAME * size:
                 return self._newton(friction, y, senses, period / parts, size) or closed
         return closed
 
-    def _put(self, state: np.ndarray, senses: np.ndarray) -> None:
-        motion, modes = self._flight.motion, self.modal.squares.size
+    def put(self, state: np.ndarray, senses: np.ndarray) -> None:
+        """Begin a flight from modes and their velocities, in the middle of a phase."""
+        motion, modes = self.flight.motion, self.modal.squares.size
         motion.state[:2, :modes] = state
         motion.sense[:] = senses
         motion.fresh[:] = 0
 
     def _taken(self) -> tuple[np.ndarray, np.ndarray]:
-        motion, modes = self._flight.motion, self.modal.squares.size
+        motion, modes = self.flight.motion, self.modal.squares.size
         return motion.state[:2, :modes].copy(), motion.sense.copy()
 
     def _middle(
         self, friction: Friction, state: np.ndarray, senses: np.ndarray, period: float
     ) -> tuple[np.ndarray, np.ndarray] | None:
         """The state in the middle between a maximum and the next event, and its pattern."""
-        self._put(state, senses)
-        time = time_to_event(self.problem, friction, self._flight, period)
-        self._put(state, senses)
-        if time == 0.0 or fly(self.problem, friction, self._flight, 0.5 * time, False, False) < 0:
+        self.put(state, senses)
+        time = time_to_event(self.problem, friction, self.flight, period)
+        self.put(state, senses)
+        if time == 0.0 or fly(self.problem, friction, self.flight, 0.5 * time, False, False) < 0:
             return None
         return self._taken()
 
     def _rates(self, friction: Friction) -> np.ndarray:
-        fill_rates(self.problem, friction, self._flight)
-        return self._flight.rates[:, : self.modal.squares.size].ravel().copy()
+        fill_rates(self.problem, friction, self.flight)
+        return self.flight.rates[:, : self.modal.squares.size].ravel().copy()
 
     def _newton(
         self, friction: Friction, y: np.ndarray, senses: np.ndarray, period: float, size: float
@@ -197,15 +198,15 @@ class Ride:
         """The state that returns, its period, and its largest multiplier; None if it is not found."""
         count, longest, last = y.size, 2.0 * period, np.inf
         for _ in range(_STEPS):
-            self._put(y, senses)
+            self.put(y, senses)
             before = self._rates(friction)
-            self._put(y, senses)
-            if fly(self.problem, friction, self._flight, period, True, False) < 0:
+            self.put(y, senses)
+            if fly(self.problem, friction, self.flight, period, True, False) < 0:
                 return None
             end, pattern = self._taken()
             if (pattern != senses).any():
                 return None
-            onward = self._flight.motion.tangent[:count, :count].copy()
+            onward = self.flight.motion.tangent[:count, :count].copy()
             off = (end - y).ravel()
             error = float(np.abs(off).max()) / size
             if error <= _CLOSED or (error >= 0.5 * last and error <= _NEARLY):
@@ -227,7 +228,7 @@ class Ride:
         F is an eigenvector of J, and the place of a contact that rests a left one: both are deflated.
         """
         left = onward - np.outer(onward @ rates, rates) / (rates @ rates)
-        rest = (self._flight.counts[STUCK] > 0.0) & (self._flight.counts[STOPS] == 0.0) & (senses == 0)
+        rest = (self.flight.counts[STUCK] > 0.0) & (self.flight.counts[STOPS] == 0.0) & (senses == 0)
         for chi in self.modal.chi[rest]:
             place = np.concatenate((chi, np.zeros_like(chi)))
             left -= np.outer(place, place @ left) / (place @ place)
@@ -237,9 +238,9 @@ class Ride:
         self, friction: Friction, y: np.ndarray, senses: np.ndarray, period: float, multiplier: float
     ) -> Motion:
         """Counts and extremes of a cycle, or of a motion over a time."""
-        self._put(y, senses)
-        fly(self.problem, friction, self._flight, period, False, True)
-        counts, ranges = self._flight.counts, self._flight.record.ranges
+        self.put(y, senses)
+        fly(self.problem, friction, self.flight, period, False, True)
+        counts, ranges = self.flight.counts, self.flight.record.ranges
         contacts = senses.size
         stops = counts[STOPS].copy()
         regime = regimes.STICK_SLIP_CYCLE if stops.any() else regimes.CYCLE_WITHOUT_STOPS

@@ -1,6 +1,6 @@
 """`response`: one steady state in time, as a dataset."""
 
-from typing import SupportsFloat, Unpack
+from typing import Any, SupportsFloat, Unpack
 
 import numpy as np
 import xarray as xr
@@ -11,9 +11,11 @@ from ..datasets.variables import stamp
 from ..errors import InputError
 from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
+from ..no_load.response import belt_response, refuse_settings
 from ..solvers.choose import engine_of
 from ..units.axes import KINDS, ratios, require
 from ..units.scales import Scales, Units, scales_of
+from .configured import belt_speeds
 from .refinement import boundary_check
 
 #: Samples of a time history per excitation period.
@@ -46,15 +48,25 @@ def _checked_cell(r: object, beta: object, mu: object, scales: Scales) -> tuple[
     return r, beta, mu
 
 
+def _belt_motion(
+    system: System, cell: tuple, points: int, units: Units | None, settings: dict[str, Any]
+) -> xr.Dataset:
+    """One motion without a load in time."""
+    refuse_settings(settings)
+    points = checks.whole(points, "points", least=2, most=_MOST_POINTS)
+    return belt_response(system, *cell, points, units, settings.get("start") or "release")
+
+
 def response(
     system: System,
-    r: SupportsFloat | str,
-    beta: SupportsFloat | str,
+    r: SupportsFloat | str | None = None,
+    beta: SupportsFloat | str | None = None,
     mu: SupportsFloat = 1.0,
     *,
     solver: Solver | None = None,
     points: int = POINTS,
     units: Units | None = None,
+    wall_speed: SupportsFloat | str | None = None,
     **settings: Unpack[SolverSettings],
 ) -> xr.Dataset:
     """Compute one steady state in time.
@@ -71,6 +83,10 @@ def response(
     units : Units, optional
         Reference values that convert ratios to Hz and N, as in `sweep`; r and beta may then be a frequency
         and a force.
+    wall_speed : float
+        In the place of r, without a load: speed of the belt over omega_1 P/k1 [-], > 0.  Of the settings only
+        `start` has a meaning: "release" (default) begins where the belt releases the mass, "moving" with a
+        large vibration.
 
     Returns
     -------
@@ -91,6 +107,9 @@ def response(
         With units also `time` [s] along tau, and every quantity in m, N, J or m/s in addition to its ratio,
         such as `x_m`, `friction_N` and `v_m_s`.
 
+        With wall_speed, over `time` (one cycle, over 1/omega_1): `x`, `v`, `z`, `friction`, `direction`, and
+        the numbers of the cell as in `sweep`.
+
     Raises
     ------
     InputError
@@ -106,6 +125,12 @@ def response(
     2
     """
     checks.instance(system, "system", System)
+    if beta is None:
+        raise InputError("beta", "must be given, such as 0.5; got nothing")
+    if belt_speeds(system, wall_speed, r) is not None:
+        return _belt_motion(system, (wall_speed, beta, mu), points, units, {"solver": solver, **settings})
+    if r is None:
+        raise InputError("r", "must be given, such as 0.5, or wall_speed without a load; got nothing")
     solver = merged(solver, settings)
     scales = scales_of(units, system)
     r, beta, mu = _checked_cell(r, beta, mu, scales)

@@ -127,10 +127,16 @@ def test_keys_without_meaning_are_refused_by_name(config, capsys, change, named)
 
 @pytest.mark.parametrize(
     "command",
-    [("curves",), ("map", "-o", "pad.zarr"), ("explore", "--no-browser"), ("reduce",)],
+    [
+        ("curves",),
+        ("response", "--r", "0.5", "--beta", "0.3"),
+        ("map", "-o", "pad.zarr"),
+        ("explore", "--no-browser"),
+        ("reduce",),
+    ],
 )
 def test_commands_under_loads_are_refused(config, capsys, command):
-    assert "grid.wall_speed" in refused(capsys, command[0], config, *command[1:])
+    assert "wall_speed" in refused(capsys, command[0], config, *command[1:])
 
 
 def test_a_belt_speed_may_be_a_further_axis_under_a_load():
@@ -147,3 +153,80 @@ def test_names_of_the_regimes():
     assert [fm.regimes.regime_name(code) for code in (4, 5, 6)] == [
         "steady_sliding", "stick_slip_cycle", "cycle_without_stops",
     ]  # fmt: skip
+
+
+def test_response(config, capsys):
+    """One cycle of a mass: it sticks at the speed of the belt and slips back."""
+    arguments = ["response", config, "--wall-speed", "10 mm/s", "--beta", "10 N"]
+    assert main(arguments) == 0
+    assert capsys.readouterr().out.startswith("stick slip cycle, period ")
+    ds = fm.open("pad-response.nc")
+    cell = fm.sweep(fm.load_config(config)).sel(beta=1.0).isel(mu=0, wall_speed=0)
+    for name in ("cycle_period", "stuck_fraction", "stops_per_cycle", "x_max", "x_min", "growth"):
+        assert ds[name].values == pytest.approx(cell[name].values, rel=1e-11), name
+    assert float(ds.time[-1]) == float(ds.cycle_period)
+    assert ds.x_m.values[0, -1] == pytest.approx(ds.x_m.values[0, 0], rel=1e-11)
+    assert ds.x.values.max() == pytest.approx(float(ds.x_max), abs=1e-6)
+    sticks = ds.direction.values == 0
+    assert sticks.mean() == pytest.approx(float(ds.stuck_fraction), abs=1e-3)
+    assert ds.v_m_s.values[0, sticks] == pytest.approx(0.01, rel=1e-11)
+    slope = np.gradient(ds.x.values[0], ds.time.values)
+    assert np.abs(slope - ds.v.values[0])[2:-2].max() < 1e-2
+    law = fm.FrictionLaw([0.0, 0.2, 0.6, 1.2], [1.0, 0.8, 0.7, 0.68], 0.08)
+    over = ds.v.values[0] - 0.01 / UNIT
+    slides = ~sticks & (np.abs(over) > 1e-9)
+    assert ds.friction.values[slides] == pytest.approx(
+        np.sign(over[slides]) * law(np.abs(over[slides])), rel=1e-9
+    )
+    for command in (["plot", "pad-response.nc"], ["info", "pad-response.nc"], ["export", "pad-response.nc"]):
+        assert main(command) == 0
+    assert matplotlib.image.imread("pad-response.png").ndim == 3
+    with open("pad-response.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 2000
+    assert float(rows[7]["x_1"]) == float(ds.x[0, 7])
+
+
+def test_works_of_a_cycle_balance():
+    """Per cycle the belt does what friction and dashpots take."""
+    law = {"speed": [0.0, 0.3, 0.8], "factor": [1.0, 0.75, 0.65], "slope": 0.05}
+    system = fm.System(
+        mass_ratios=[1, 1.5], stiffness_ratios=[1, 0.8], damping_ratios=0.03,
+        contacts=[fm.Contact(masses=[2], law=law)],
+    )  # fmt: skip
+    ds = fm.response(system, wall_speed=0.3, beta=0.6, points=40001)
+    assert ds.x.dims == ("dof", "time")
+    force, time = ds.friction.values, ds.time.values
+    belt = np.trapezoid(-force * 0.3, time)
+    friction = np.trapezoid(force * (ds.v.values[1] - 0.3), time)
+    damping = np.trapezoid(np.einsum("it,ij,jt->t", ds.v, system.modes.damping, ds.v), time)
+    assert belt == pytest.approx(friction + damping, rel=1e-4)  # one jump of the force between samples
+    assert friction > 0.0
+    assert damping > 0.0
+
+
+def test_steady_sliding_and_a_large_motion_in_time():
+    law = {"speed": [0.0, 0.2, 0.6, 1.2], "factor": [1.0, 0.8, 0.7, 0.68], "slope": 0.08}
+    system = fm.System(damping_ratios=0.03, contacts=[fm.Contact(law=law)])
+    still = fm.response(system, wall_speed=1.3, beta=1.0, points=50)
+    assert int(still.regime) == fm.regimes.STEADY_SLIDING
+    assert still.x.values == pytest.approx(0.68 + 0.08 * 0.1, rel=1e-12)
+    assert still.friction.values == pytest.approx(-(0.68 + 0.08 * 0.1), rel=1e-12)
+    moving = fm.response(system, wall_speed=0.7, beta=1.0, points=50, start="moving")
+    assert int(moving.regime) == fm.regimes.STICK_SLIP_CYCLE
+
+
+def test_arguments_of_responses_without_a_load():
+    system = fm.System(damping_ratios=0.03)
+    with pytest.raises(fm.InputError, match="^r must be given"):
+        fm.response(system, beta=0.5)
+    with pytest.raises(fm.InputError, match="^beta must be given"):
+        fm.response(system, wall_speed=0.5)
+    with pytest.raises(fm.InputError, match="cannot use r with wall_speed"):
+        fm.response(system, 0.5, 0.5, wall_speed=0.5)
+    with pytest.raises(fm.InputError, match="cannot use cycles with wall_speed"):
+        fm.response(system, wall_speed=0.5, beta=0.5, cycles=10)
+    with pytest.raises(fm.InputError, match="^start must be"):
+        fm.response(system, wall_speed=0.5, beta=0.5, start="rest")
+    with pytest.raises(fm.InputError, match="^wall_speed must be > 0"):
+        fm.response(system, wall_speed=0.0, beta=0.5)

@@ -1,0 +1,110 @@
+"""Pictures of one motion on a belt without a load: in time, and in the plane of displacement and velocity."""
+
+from typing import TYPE_CHECKING, Unpack
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ...datasets.motion_labels import stuck_times
+from ...datasets.physical import ones_of
+from ...units.table import UNITS, handy_unit
+from ..drawing import with_options
+from ..options import FigureOptions
+from ..palette import CLASSES, LINES, STUCK
+from ..panels import Handle, new_figure
+from ..shapes import check_holds, to_draw
+from .in_time import end_picture
+
+if TYPE_CHECKING:
+    from ..panels import AxesArray
+
+#: Size of the picture [inch].
+_WIDTH, _HEIGHT = 9.0, 5.4
+
+
+@with_options
+def plot_belt_motion(ds: xr.Dataset, **options: Unpack[FigureOptions]) -> "AxesArray":
+    """Draw one motion on a belt without a load.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `response` with wall_speed.
+
+    Returns
+    -------
+    Axes of the displacements and of the friction over time, and of the velocities over the displacements.
+
+    Raises
+    ------
+    InputError
+        The dataset is another one.
+    """
+    ds = to_draw(ds, "plot_belt_motion", "belt")
+    check_holds(ds, ("time", "x", "v", "friction", "direction"), "a motion")
+    figure = new_figure(_WIDTH, _HEIGHT)
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.6, 1.0))
+    above = figure.add_subplot(grid[0, 0])
+    axes = np.array([above, figure.add_subplot(grid[1, 0], sharex=above), figure.add_subplot(grid[:, 1])])
+    _draw_times(axes[0], axes[1], ds)
+    _draw_plane(axes[2], ds)
+    end_picture(ds, axes, _handles(ds), "")
+    return axes
+
+
+def _handy(ds: xr.Dataset, name: str, measure: str) -> tuple[float, str]:
+    """Factor of ratios in a handy unit, and the unit in brackets; 1 where none is known."""
+    one = ones_of(ds).get(measure)
+    if one is None:
+        return 1.0, ""
+    unit = handy_unit(one * float(np.abs(ds[name].values).max()), measure)
+    return one / float(UNITS[unit].size), f" [{unit}]"
+
+
+def _draw_times(places: Axes, forces: Axes, ds: xr.Dataset) -> None:
+    """Draw displacements and friction over time; all contacts stick where it is shaded."""
+    in_seconds = "time_s" in ds
+    time = ds["time_s" if in_seconds else "time"].values
+    place, length = _handy(ds, "x", "length")
+    force, newton = _handy(ds, "friction", "force")
+    for ax, rows, words in (
+        (places, place * ds["x"].values, f"displacement{length}"),
+        (forces, force * np.atleast_2d(ds["friction"].values), f"friction{newton}"),
+    ):
+        for k, row in enumerate(rows):
+            ax.plot(time, row, color=LINES[k % len(LINES)], linewidth=1.2)
+        ax.set_ylabel(words)
+        ax.margins(x=0.0)
+        for begin, end in stuck_times(time, np.atleast_2d(ds["direction"].values)):
+            ax.axvspan(begin, end, color=CLASSES[STUCK].colour, alpha=0.35, linewidth=0.0)
+    forces.set_xlabel("time [s]" if in_seconds else r"time [1/$\omega_1$]")
+
+
+def _draw_plane(ax: Axes, ds: xr.Dataset) -> None:
+    """Draw velocities over displacements, and the speed of the belt."""
+    place, length = _handy(ds, "x", "length")
+    speed, unit = _handy(ds, "wall_speed", "velocity")
+    for k, (x, v) in enumerate(zip(ds["x"].values, ds["v"].values, strict=True)):
+        ax.plot(place * x, speed * v, color=LINES[k % len(LINES)], linewidth=1.2)
+    ax.axhline(speed * float(ds["wall_speed"]), color="black", linewidth=0.8, linestyle=(0, (4, 2)))
+    ax.set_xlabel(f"displacement{length}")
+    ax.set_ylabel(f"velocity{unit}")
+
+
+def _handles(ds: xr.Dataset) -> list[Handle]:
+    handles: list[Handle] = []
+    if ds.sizes["dof"] > 1:
+        handles += [
+            Line2D([], [], color=LINES[k % len(LINES)], label=f"mass {number}")
+            for k, number in enumerate(ds["dof"].values)
+        ]
+    if ds.sizes.get("contact", 1) > 1:
+        handles += [
+            Line2D([], [], color=LINES[k % len(LINES)], label=f"friction of contact {number}")
+            for k, number in enumerate(ds["contact"].values)
+        ]
+    handles.append(Line2D([], [], color="black", linestyle=(0, (4, 2)), label="speed of the belt"))
+    return [*handles, Patch(color=CLASSES[STUCK].colour, alpha=0.35, label="all contacts stick")]

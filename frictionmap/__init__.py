@@ -12,7 +12,7 @@ checks         checks of input, whose messages name the valid range
 jobs           jobs on a pool of threads
 packages       optional packages (extras), and the message if one is missing
 mat_files      arrays from MAT files of all versions
-structures     matrices from files of finite-element programs, and their reduction
+structures     matrices and modes from files of finite-element programs; reduction; beams and plates
 _kernels       all compiled code: numbers and arrays in, numbers and codes out
 model          what is simulated: system, matrices, modes, settings of the solver
 units          units of measurement: hertz and newtons for the ratios r and beta
@@ -99,17 +99,22 @@ if TYPE_CHECKING:
     from .steady.sweep import sweep
     from .stop_counts.dataset import borders
     from .stores.spectrum import spectrum
+    from .structures.modes import Modes
+    from .structures.uniform import Beam, Plate
     from .theory.continuous_motion import continuous_motion
     from .units.dimensions import system_in_units
     from .units.scales import Units
 
 __all__ = [
+    "Beam",
     "Contact",
     "FrictionLaw",
     "InputError",
+    "Modes",
     "NoSteadyState",
     "NormalForce",
     "PeriodicLoad",
+    "Plate",
     "Record",
     "Solver",
     "Spring",
@@ -157,11 +162,14 @@ __all__ = [
 # Loaded when first used: numba, xarray and matplotlib together take most of a second to import, and
 # `frictionmap --help` needs none of them.
 _HOME = {
+    "Beam": "structures.uniform",
     "Contact": "model.contact",
     "FrictionLaw": "model.friction_law",
     "NormalForce": "model.normal_contact",
     "Spring": "model.spring_element",
+    "Modes": "structures.modes",
     "PeriodicLoad": "model.periodic_load",
+    "Plate": "structures.uniform",
     "Record": "motions.record",
     "Solver": "model.settings",
     "System": "model.system",

@@ -913,6 +913,7 @@ LABELS = {**_RATIOS, **IN_SI}
 BESIDE = {
     "contact": Label(np.int64, "contact, counted from 1", ("contact",), least=1),
     "contact_name": Label(np.str_, "name of the contact", ("contact",)),
+    "point_name": Label(np.str_, "name of the point", ("dof",)),
     "frequency": Label(np.float64, "excitation frequency", ("r",), least=0.0, units="Hz"),
     "friction_force": Label(np.float64, "kinetic friction force", ("beta",), least=0.0, units="N"),
     "friction_coefficient": Label(np.float64, "coefficient of kinetic friction", ("beta",), least=0.0),

@@ -14,6 +14,7 @@ import numpy as np
 from ..model.contact import WALLS
 from ..model.general import contacts_of
 from ..model.matrices import Matrices
+from ..structures.modes import Modes
 
 if TYPE_CHECKING:
     from ..model.contact import Contact
@@ -146,6 +147,8 @@ def _system_lines(system: "System", file: str) -> list[str]:
     if system.reduction is not None:
         asked = system.reduction.asked._asdict()
         lines.append(f"# reduced from {system.reduction.structure.n}: reduce = {value_text(asked)}")
+    if isinstance(matrices, Modes):
+        return [*lines, _modes_line(matrices)]
     if not isinstance(matrices, Matrices):
         return lines
     if file:
@@ -154,6 +157,17 @@ def _system_lines(system: "System", file: str) -> list[str]:
         return [*lines, f"# matrices = {matrices.n} by {matrices.n}, too large to be put here"]
     table = {name: array.tolist() for name, array in matrices.arrays.items()}
     return [*lines, f"matrices = {value_text(table)}"]
+
+
+def _modes_line(modes: Modes) -> str:
+    """Modes as a table in one line, or a comment where it would be too large."""
+    count = modes.shapes.size
+    if count > _MOST_VALUES:
+        return f"# modes = {modes.w.size} at {len(modes.points)} points, too large to be put here"
+    table = {"frequencies": modes.w.tolist(), "points": list(modes.points), "shapes": modes.shapes.tolist()}
+    if modes.residual is not None:
+        table["residual"] = modes.residual.tolist()
+    return f"modes = {value_text({**table, 'normalised': 'mass'})}"
 
 
 def _contacts_and_loads(system: "System") -> dict[str, object]:
@@ -171,14 +185,14 @@ def _contacts_and_loads(system: "System") -> dict[str, object]:
         numbers = system.dofs.numbers
         entries = [
             {"n": n, "mass": int(numbers[row]), "re": value.real, "im": value.imag}
-            for n, vector in system.contact_system.forces.items()
+            for n, vector in system.contact_system.loads.items()
             for row, value in enumerate(vector.tolist())
             if value != 0.0
         ]
         entries += [{"n": n, "re": u.real, "im": u.imag} for n, u in system.contact_system.base.items()]
         found |= {"load_harmonics": entries, "load_mass": 1}
     if system.load_offset is not None:
-        found["load_offset"] = system.contact_system.offset.tolist()
+        found["load_offset"] = system.contact_system.constant_loads.tolist()
     if system.springs is not None:
         found["springs"] = [_spring_keys(one, system.dofs) for one in system.springs]  # type: ignore[arg-type]
     return found

@@ -287,6 +287,8 @@ def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, Any]
         given = table.get(key)
         if isinstance(given, str) and given and given not in WAVEFORMS:
             table[key] = folder / given
+    if isinstance(table.get("modes"), str) and table["modes"]:
+        table["modes"] = folder / table["modes"]
     if isinstance(table.get("contacts"), list):
         table["contacts"] = [_contact(one, folder) for one in table["contacts"]]
     matrices = table.get("matrices", {})

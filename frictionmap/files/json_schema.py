@@ -14,15 +14,14 @@ from .keys import KEYS, TABLES
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
+#: A structure that is no chain.
+_GIVEN = {"anyOf": [{"required": [name]} for name in ("matrices", "modes", "beam", "plate")]}
+
 #: What keys of [system] say of each other, in the words of the errors of `System`.
 _TOGETHER: list[Schema] = [
     {"dependentSchemas": {"matrices": {"properties": {"mass_ratios": False, "stiffness_ratios": False}}}},
     {"dependentSchemas": {"load": {"properties": {"load_mass": False, "excitation": {"const": "force"}}}}},
-    {
-        "dependentRequired": {
-            name: ["matrices"] for name in ("frequency_scale", "reduce", "rayleigh", "decouple")
-        }
-    },
+    {"dependentRequired": {name: ["matrices"] for name in ("reduce", "rayleigh", "decouple")}},
     {
         "dependentSchemas": {
             "masses": {"properties": {"mass_ratios": False, "matrices": False}},
@@ -36,9 +35,10 @@ _TOGETHER: list[Schema] = [
         },
         "then": {"properties": {"stiffness_ratios": False, "matrices": False}},
     },
+    {"if": {"required": ["frequency_scale"]}, "then": _GIVEN},
     {"dependentSchemas": {"rayleigh": {"properties": {"damping_ratios": False}}}},
     {
-        "if": {"not": {"required": ["matrices"]}},  # a chain has no labels
+        "if": {"not": _GIVEN},  # a chain has no labels
         "then": {
             "properties": {"contact_masses": {"items": {"type": "integer"}}, "load_mass": {"type": "integer"}}
         },

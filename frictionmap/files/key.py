@@ -77,8 +77,8 @@ def axis(kind: str, **ends: float) -> Schema:
     )
 
 
-#: Number or label of a mass.
-DOF = either(whole(least=1), {"type": "string", "pattern": r"^\d+\.\d+$"})
+#: Number, label or name of a mass or point.
+DOF = either(whole(least=1), {"type": "string", "minLength": 1})
 
 
 def describe_values(key: Key) -> str:

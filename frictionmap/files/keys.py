@@ -31,6 +31,7 @@ from ..units.axes import KINDS
 from ..units.dimensions import DIMENSIONS, RATIOS, kinds_of
 from ..units.quantities import EXAMPLES
 from ..units.scales import OF_MODEL, UNIT_KINDS, WEIGHT, WORDS
+from ..units.structures import STRUCTURES
 from ..units.table import units_of
 from .key import DOF, Key, Schema, axis, either, number, several, table, whole, with_unit, word
 
@@ -223,6 +224,77 @@ def _spread(kind: str) -> Schema:
 
 
 _SPREAD_TIME, _SPREAD_FRICTION = _spread("time"), _spread("acceleration")
+
+
+def _size(kind: str) -> Schema:
+    """A number > 0 with or without a unit."""
+    return either(number(above=0.0), with_unit(kind))
+
+
+def _structure(name: str, own: dict[str, Schema]) -> Schema:
+    """A table [system.beam] or [system.plate]; `own`: the keys that are not one number > 0."""
+    _, measures = STRUCTURES[name]
+    return table({**{key: _size(kind) for key, kind in measures.items()}, **own}, ("points",))
+
+
+_COORDINATE = either(number(least=0.0), with_unit("length"))
+_NAMED = {"type": "object", "minProperties": 1}
+_FLEXIBLE = {"modes": whole(least=1), "with_residual": {"type": "boolean"}}
+_BEAM = _structure(
+    "beam", {**_FLEXIBLE, "ends": _NAME, "points": {**_NAMED, "additionalProperties": _COORDINATE}}
+)
+_PLATE = _structure(
+    "plate",
+    {
+        **_FLEXIBLE,
+        "edges": several(word("clamped", "supported", "pinned", "simply-supported", "free"), 4, maxItems=4),
+        "size": several(_size("length"), 2, maxItems=2),
+        "nu": number(least=0.0, most=0.5),
+        "points": {**_NAMED, "additionalProperties": several(_COORDINATE, 2, maxItems=2)},
+    },
+)
+_MODES = either(
+    _NAME,
+    table(
+        {
+            "frequencies": several(either(number(least=0.0), with_unit("frequency"))),
+            "damping_ratios": either(_ZETA, several(_ZETA)), "points": several(_NAME), "shapes": _MATRIX,
+            "residual": _MATRIX, "compliance": _MATRIX, "modal_masses": several(number(above=0.0)),
+            "normalised": word("mass"),
+        },
+        ("frequencies", "shapes"),
+    ),
+)  # fmt: skip
+
+#: Keys of [system] for structures given by modes.
+STRUCTURE_KEYS = (
+    Key(
+        "modes",
+        "instead of the ratios: modes of a structure at named points, to which contacts and loads refer",
+        _MODES,
+        example='{ frequencies = ["31.2 Hz"], points = ["tip"], shapes = [[1.9]], normalised = "mass" }',
+        words="{ frequencies, damping_ratios, points, shapes, residual or compliance, and modal_masses or "
+        'normalised = "mass" }',
+    ),
+    Key(
+        "beam",
+        "instead of the ratios: a uniform beam in bending; as a table [system.beam]",
+        _BEAM,
+        example='{ ends = "clamped-free", length = "300 mm", bending_stiffness = "21 N m^2", '
+        'mass_per_length = "0.78 kg/m", points = { tip = "300 mm" } }',
+        words="{ ends, length, bending_stiffness or E, mass_per_length or density, width and height or "
+        "diameter, points = { name = x }, modes, with_residual }",
+    ),
+    Key(
+        "plate",
+        "instead of the ratios: a uniform rectangular plate in bending; as a table [system.plate]",
+        _PLATE,
+        example='{ edges = ["clamped", "free", "free", "free"], size = ["300 mm", "200 mm"], thickness = '
+        '"2 mm", E = "210 GPa", density = "7850 kg/m^3", points = { corner = ["300 mm", "200 mm"] } }',
+        words="{ edges, size, thickness, E or bending_stiffness, density or mass_per_area, nu, "
+        "points = { name = [x, y] }, modes, with_residual }",
+    ),
+)
 
 #: Keys of [system] for several contacts, springs in contacts, belts and periodic loads.
 GENERAL_KEYS = (
@@ -552,10 +624,11 @@ KEYS: dict[str, tuple[Key, ...]] = {
             _or_unit(number(above=0.0), "frequency_scale"),
             example="12.3",
         ),
-        _system_key(
+        Key(
             "stiffness_scale",
             "with matrices: displacements are in units of P/stiffness_scale; given in the units of K",
             _or_unit(number(above=0.0), "stiffness_scale"),
+            1.0,
         ),
         _system_key(
             "excitation",
@@ -572,6 +645,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "what the moving base holds constant over frequency; its amplitude is Y/r^2 for acceleration",
             word(*BASE_CONTROLS),
         ),
+        *STRUCTURE_KEYS,
         *GENERAL_KEYS,
     ),
     "grid": (

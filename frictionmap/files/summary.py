@@ -163,7 +163,7 @@ def header_lines(ds: xr.Dataset, what: str) -> list[str]:
     """Title and kind, system, source, history."""
     texts = {name: _printable(ds.attrs.get(name, "")) for name in TEXTS}
     lines = [textwrap.shorten(texts["title"], _WIDTH - len(what) - 3, placeholder="...") + f" [{what}]"]
-    for name in ("system", "reduction", "reduction_check", "decoupling", "source", "history"):
+    for name in ("system", "reduction", "reduction_check", "decoupling", "modes", "source", "history"):
         if texts[name]:
             lines += _entry(name.replace("_", " "), texts[name])
     units = describe_scales(ds)

@@ -49,7 +49,7 @@ def rest_states(system: System, modal: ModalSystem, r: np.ndarray) -> np.ndarray
     """Modes and velocities at rest at tau = 0, (n_r, 2, m); masses at a joined wall have its displacement."""
     general = general_of(system)
     phi, mass = modal.phi, modal.mass
-    x = np.zeros(system.n)
+    x = np.zeros(len(mass))
     u = sum(value.real for value in general.base.values())
     for group in general.groups:
         if group.base:
@@ -67,7 +67,7 @@ def stays_at_rest(system: System, start: Start) -> bool:
     Rigid contacts hold all masses, and the load is as large both ways: the place at rest is the best one.
     """
     general = general_of(system)
-    held = general.count == system.n and not general.elastic.any() and not general.base
+    held = general.count == general.vectors.shape[1] and not general.elastic.any() and not general.base
     alike = is_symmetric(general) and not any(group.first.nu for group in general.groups)
     return start == "rest" and held and alike
 

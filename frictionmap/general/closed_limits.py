@@ -47,7 +47,7 @@ def _plain(system: System) -> tuple[System, float]:
     }
     if general.base:
         return replace(system, **changed), abs(general.base[order])
-    load = tuple(general.forces[order].tolist())
+    load = tuple(general.loads[order].tolist())
     return replace(system, **changed, load=load, load_mass=None), 1.0
 
 

@@ -16,7 +16,7 @@ from .boundaries import find_boundaries, stays_at_rest
 from .certificate import certified_beta
 from .cycle import equivalent, first_harmonics, harmonic_values, parts, phase_values, work_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
-from .held import held_forces, held_ranges
+from .held import held_displacements, held_ranges
 from .maps import put_offset
 from .observed import wants_further
 from .outputs import allocate, is_wanted, output_values
@@ -74,7 +74,7 @@ def _stuck(system: System, asked: CurveSettings, r: float) -> dict[str, np.ndarr
         for name, table in (("amplitude", moduli), ("peak_to_peak", ranges)):
             values[name] = table[general.count : general.count + system.n]
             values[f"contact_{name}"] = np.where(rigid, 0.0, table[: general.count])
-    _, motions = held_forces(system, np.array([r]))
+    motions = held_displacements(system, np.array([r]))
     if "first_harmonic" in asked.quantities and 1 in motions:
         first = motions[1][0]
         finite = np.isfinite(first)

@@ -30,12 +30,18 @@ def _lag(phasors: np.ndarray) -> np.ndarray:
     return np.where(phasors == 0.0, np.nan, -np.angle(np.where(phasors == 0.0, 1.0, phasors)))
 
 
+def _contact_harmonics(system: System, steps: Steps, x: np.ndarray, highest: int) -> np.ndarray:
+    """Harmonics of the displacements in the contacts, complex (N, highest + 1)."""
+    points = general_of(system).points
+    return steps.harmonics("z", highest) if points is None else points.vectors @ x
+
+
 def harmonic_values(system: System, steps: Steps, highest: int) -> dict[str, np.ndarray]:
     """Harmonics 0 to `highest` of masses, contacts and forces; NaN of a motion that does not repeat."""
     offset_z, offset_x = static_offset(system)
-    x = steps.modal.phi @ steps.harmonics("q", highest)
+    x = steps.displacement_harmonics(highest)
+    z, f = _contact_harmonics(system, steps, x, highest), steps.harmonics("f", highest)
     x[:, 0] += offset_x
-    z, f = steps.harmonics("z", highest), steps.harmonics("f", highest)
     z[:, 0] += offset_z
     phasors = {"displacement_harmonic": x, "contact_harmonic": z, "friction_harmonic": f}
     if steps.period and steps.drifts:  # forces repeat, and displacements do not
@@ -85,9 +91,9 @@ def work_values(system: System, steps: Steps) -> dict[str, np.ndarray]:
     if general.base or steps.drifts:
         given = friction.sum() + damping - wall.sum()
     else:
-        highest = max(general.forces)
-        x = steps.modal.phi @ steps.harmonics("q", highest)
-        given = np.pi * sum(n * (p * x[:, n].conj()).imag.sum() for n, p in general.forces.items())
+        highest = max(general.loads)
+        x = steps.displacement_harmonics(highest)
+        given = np.pi * sum(n * (p * x[:, n].conj()).imag.sum() for n, p in general.loads.items())
     return {"work_input": np.array(given), "work_damping": np.array(damping), "work_friction": friction}
 
 
@@ -102,18 +108,19 @@ def first_harmonics(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 def phase_values(steps: Steps) -> dict[str, np.ndarray]:
     """Lags of the maxima of the displacements; NaN where the period is not 1 or the masses rest there."""
-    count = steps.modal.phi.shape[0]
+    rows = steps.modal.points
+    count = steps.modal.phi.shape[0] if rows is None else len(rows.shapes)
     if steps.period != 1 or steps.drifts:
         return {"phase_lag": np.full(count, np.nan)}
     tau = np.linspace(0.0, 2.0 * np.pi, _SAMPLES * max(64, steps.begins.size) + 1)[:-1]
-    x = steps.modal.phi @ steps.at("q", tau)
+    x = steps.displacements(tau)
     found = np.full(count, np.nan)
     for i in range(count):
         largest = np.argmax(np.abs(x[i]))
         place, step = tau[largest], tau[1]
         for _ in range(_REFINED):
             around = place + 1e-4 * step * np.array([-1.0, 0.0, 1.0])
-            v = steps.modal.phi[i] @ steps.at("q", around, 1)
+            v = steps.displacements(around, 1)[i]
             bend = (v[2] - v[0]) / (around[2] - around[0])
             if bend == 0.0:
                 break

@@ -93,6 +93,15 @@ def contact_coordinates(system: System) -> dict[str, xr.Variable]:
     return found
 
 
+def mass_coordinates(system: System) -> dict[str, xr.Variable]:
+    """Coordinates along the masses, or along points with their names."""
+    found = {"dof": coordinate("dof", np.array(system.dofs.numbers))}
+    if system.by_modes:
+        names = np.array(system.dofs.written_labels)
+        found["point_name"] = xr.Variable(("dof",), names, {"long_name": "name of the point"})
+    return found
+
+
 def cell_arrays(
     system: System, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver,
     threads: int | None, progress: Progress | None, watch: Watch | None,
@@ -132,7 +141,7 @@ def general_map(
                 variables[name].attrs = full | {"long_name": LABELS[name].long_name}
     coords = {name: coordinate(name, values) for name, values in axes.items()}
     if any(is_of_masses(name) for name in names):
-        coords["dof"] = coordinate("dof", np.array(system.dofs.numbers))
+        coords |= mass_coordinates(system)
     if "segment_fraction" in found:
         coords["segment"] = coordinate("segment", segments_of(general))
     return xr.Dataset(
@@ -156,8 +165,9 @@ def general_boundaries(system: System, r: np.ndarray, mu: np.ndarray) -> xr.Data
 
     contacts = general_of(system)
     refuse_static(contacts, mu)
-    axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
+    axes = {"mu": mu, "r": r}
     coords = {name: coordinate(name, axis) for name, axis in axes.items()} | contact_coordinates(system)
+    coords |= mass_coordinates(system)
     if contacts.loop:
         variables = {"beta_stick": label_variable("beta_stick", loop_stick_scales(system, r, mu))}
     else:

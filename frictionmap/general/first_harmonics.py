@@ -10,7 +10,7 @@ from .._kernels.general.steady import REPEATS
 from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines, rest_states
-from .held import held_forces, least_static_friction, stick_scales
+from .held import held_displacements, least_static_friction, stick_scales
 from .problem import general_of, problem_of
 from .recorded import recorded_state
 
@@ -34,12 +34,14 @@ def steady_phasors(system: System, r: np.ndarray, beta: np.ndarray) -> tuple[np.
     phasors = np.full((r.size, system.n), complex(np.nan, np.nan))
     regime = np.full(r.size, regimes.UNRESOLVED, np.int8)
     free = beta == 0.0
-    phasors[free] = system.modes.mass_responses(at)[index[free]]
+    general = general_of(system)
+    without = general.displacements(1, system.modes.mass_responses(at), np.zeros((at.size, general.count)))
+    phasors[free] = without[index[free]]
     regime[free] = regimes.CONTINUOUS
     one = np.ones(1)
     stick = stick_scales(general_of(system), least_static_friction(system, at), one)[0].max(axis=1)
     stuck = ~free & (beta >= stick[index])
-    phasors[stuck] = held_forces(system, at)[1][1][index[stuck]]
+    phasors[stuck] = held_displacements(system, at)[1][index[stuck]]
     regime[stuck] = regimes.PERMANENT_STICKING
     _follow(system, (at, index), beta, np.flatnonzero(~free & ~stuck), (phasors, regime))
     return phasors, regime

@@ -44,7 +44,7 @@ def linear_parts(
     general, modes = general_of(system), system.modes
     square = (order * r)[:, np.newaxis]
     matrix = stiffness - square[:, np.newaxis] ** 2 * modes.mass + 1j * square[:, np.newaxis] * modes.damping
-    load = np.zeros((r.size, system.n), dtype=complex)
+    load = np.zeros((r.size, len(stiffness)), dtype=complex)
     load += general.forces.get(order, 0.0)
     u = general.base.get(order, 0.0)
     load += u * modes.stiffness.sum(axis=1)
@@ -70,7 +70,8 @@ def held_forces_of(
 ) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:
     """Forces and displacements as of `held_forces`, with the contacts `which` (N',) alone."""
     general = general_of(system)
-    n, elastic, vectors = system.n, general.elastic[which], general.vectors[which]
+    elastic, vectors = general.elastic[which], general.vectors[which]
+    n = vectors.shape[1]
     moved = np.array([float(general.groups[j].base) for j in which])
     kt = springs(general)[which]
     w = vectors[~elastic].T
@@ -84,14 +85,29 @@ def held_forces_of(
         u = general.base.get(order, 0.0)
         right[:, :n] += u * (vectors.T * kt) @ moved
         right[:, n:] = u * moved[~elastic]
+        direct = _direct(general, order)[which]
+        right[:, :n] -= (vectors.T * kt) @ direct
         found = solve_each(matrix, right)
         x = found[:, :n]
         force = np.empty((r.size, which.size), dtype=complex)
         force[:, ~elastic] = found[:, n:]
         with np.errstate(invalid="ignore"):  # an infinite x
-            force[:, elastic] = kt[elastic] * (x @ vectors[elastic].T - u * moved[elastic])
+            force[:, elastic] = kt[elastic] * (x @ vectors[elastic].T - u * moved[elastic] + direct[elastic])
         forces[order], motions[order] = force, x
     return forces, motions
+
+
+def _direct(general: ContactSystem, order: int) -> np.ndarray:
+    """Displacements in the contacts by a harmonic of the load that modes leave out, (N,)."""
+    points = general.points
+    return np.zeros(general.count) if points is None else points.vectors @ points.pushed(order)
+
+
+def held_displacements(system: System, r: np.ndarray) -> dict[int, np.ndarray]:
+    """Displacements (n_r, n) of masses, or points, with all contacts held, by order; inf at a resonance."""
+    general = general_of(system)
+    forces, motions = held_forces(system, r)
+    return {n: general.displacements(n, motion, forces[n]) for n, motion in motions.items()}
 
 
 def held_ranges(system: System, r: np.ndarray, further: bool = False) -> tuple[np.ndarray, np.ndarray]:
@@ -100,11 +116,12 @@ def held_ranges(system: System, r: np.ndarray, further: bool = False) -> tuple[n
     Infinite at a resonance; 0 in rigid contacts.  With `further` also what else is observed, see `observed`.
     """
     general = general_of(system)
-    _, motions = held_forces(system, r)
+    motions = held_displacements(system, r)
     orders = np.array(list(motions), dtype=float)
     x = np.stack(list(motions.values()), axis=-1)  # (n_r, n, H)
     more = [observed_phasors(system, n, r, one) for n, one in motions.items()] if further else []
-    z = np.einsum("jn,rnh->rjh", general.vectors, x)
+    vectors = general.vectors if general.points is None else general.points.vectors
+    z = np.einsum("jn,rnh->rjh", vectors, x)
     for j, group in enumerate(general.groups):
         if group.base:
             z[:, j] -= np.array([general.base.get(int(n), 0.0) for n in orders])
@@ -125,7 +142,8 @@ def sliding_phasors(system: System, r: np.ndarray) -> np.ndarray:
     for order in orders_of(general):
         x = solve_each(*linear_parts(system, system.modes.stiffness, order, r))
         with np.errstate(invalid="ignore"):  # an infinite x
-            found.append(x @ general.vectors.T - general.base.get(order, 0.0) * moved)
+            z = x @ general.vectors.T - general.base.get(order, 0.0) * moved
+            found.append(z + _direct(general, order) if general.points is not None else z)
     return np.stack(found, axis=-1)
 
 

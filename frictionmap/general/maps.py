@@ -12,7 +12,7 @@ from ..model.system import System
 from .boundaries import friction_lines, stays_at_rest
 from .certificate import certified_beta
 from .held import held_ranges
-from .observed import observed_rows
+from .observed import has_residual, observed_rows, of_contacts_last
 from .outputs import allocate
 from .problem import general_of, problem_of, static_offset
 from .starts import initial_states
@@ -77,7 +77,7 @@ def solve_cells(
     settled = places and not general.free  # the place of a free structure is arbitrary
     grid = Grid(beta, kinetic, static, stuck_from, starts, settled, float(solver.cycles), solver.tolerance)
     outputs = np.empty((0, modal.phi.shape[1]))
-    if masses or further:
+    if masses or further or has_residual(system):
         outputs = observed_rows(system, modal, further)
     found = allocate((mu.size, r.size, many), general.count, len(outputs), problem.law.speed.shape[1])
     found.unique[:] = sure
@@ -92,6 +92,7 @@ def solve_cells(
     except BaseException:
         cancel[0] = 1  # the kernel checks it at every cell
         raise
+    found = of_contacts_last(system, found)
     for at_zero in np.flatnonzero(r == 0.0):
         _put_r_zero(found, int(at_zero), beta[at_zero], beta_stick)
     _put_stuck(system, r, found)

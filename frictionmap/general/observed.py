@@ -7,6 +7,7 @@ from collections.abc import Collection
 
 import numpy as np
 
+from .._kernels.general.fill import Cells
 from ..errors import InputError
 from ..model.settings import RECORDED
 from ..model.system import System
@@ -21,6 +22,7 @@ def wants_further(system: System, names: Collection[str]) -> bool:
     InputError
         Drifts are wanted of a structure whose storeys are not known.
     """
+    _refuse_for_points(system, names)
     if "drift" in names and system.matrices is not None:
         raise InputError(
             "cannot compute drift of a structure given by matrices: its storeys are not known; give a chain "
@@ -29,25 +31,78 @@ def wants_further(system: System, names: Collection[str]) -> bool:
     return any(name in RECORDED for name in names)
 
 
+def _refuse_for_points(system: System, names: Collection[str]) -> None:
+    """Refuse outputs that modes at points do not define."""
+    if not system.by_modes:
+        return
+    points = general_of(system).points
+    direct = points is not None and points.residual is not None
+    for name in ("drift", "base_force", *(("acceleration_amplitude",) if direct else ())):
+        if name in names:
+            why = {
+                "drift": "storeys are not known",
+                "base_force": "the force on the base is not known from points",
+                "acceleration_amplitude": "the residual flexibility has no inertia, and velocities jump",
+            }[name]
+            raise InputError(f"cannot compute {name} of a structure given by modes: {why}; omit it")
+
+
 def observed_rows(system: System, modal: ModalSystem, further: bool) -> np.ndarray:
     """Rows for the kernels: displacements of the masses by modes (n, m); with further ones (3 n + 1, ...).
 
     The further columns are shares of the channels, and whether a row is a force, see `Record`.
     """
-    phi, (n, m) = modal.phi, modal.phi.shape
+    phi = modal.phi if modal.points is None else modal.points.shapes
+    n, m = phi.shape
+    if has_residual(system):
+        return _rows_with_forces(system, modal)
     if not further:
         return np.ascontiguousarray(phi)
     channels = channels_of(system, modal)
     rows = np.zeros((3 * n + 1, m + len(channels) + 1))
     rows[:n, :m] = rows[2 * n : 3 * n, :m] = phi
     rows[n : 2 * n, :m] = np.diff(phi, axis=0, prepend=np.zeros((1, m)))
-    rows[3 * n, :m] = modal.mass.sum(axis=0) @ phi
+    if modal.points is None:
+        rows[3 * n, :m] = modal.mass.sum(axis=0) @ phi
     rows[2 * n :, -1] = 1.0
     if general_of(system).base:  # the first channel is then the motion of the base
         rows[n, m] = -1.0
-    else:
+    elif modal.points is None:
         rows[3 * n, m : m + len(channels)] = [-channel.push.sum() for channel in channels]
     return rows
+
+
+def has_residual(system: System) -> bool:
+    """Whether displacements contain those of modes that are left out, see `_rows_with_forces`."""
+    points = general_of(system).points
+    return points is not None and points.residual is not None
+
+
+def _rows_with_forces(system: System, modal: ModalSystem) -> np.ndarray:
+    """Displacements of the points and, after them, in the contacts: (p + N, m + D + N + 1).
+
+    Columns are shares of modes, channels and friction forces, and zeros: no row is a force, see `Record`.
+    """
+    points, rows = general_of(system).points, modal.points
+    assert points is not None
+    assert rows is not None
+    whole = np.hstack((rows.shapes, rows.loads, rows.forces, np.zeros((system.n, 1))))
+    return np.ascontiguousarray(np.vstack((whole, points.vectors @ whole)))
+
+
+def of_contacts_last(system: System, cells: Cells) -> Cells:
+    """Put the displacements in the contacts that are recorded after those of the points in their place.
+
+    With a residual flexibility, the kernels know those of its other end.
+    """
+    if not has_residual(system):
+        return cells
+    count = general_of(system).count
+
+    def in_place(table: np.ndarray) -> np.ndarray:
+        return np.concatenate((table[..., -count:], table[..., count:-count]), axis=-1)
+
+    return cells._replace(lowest=in_place(cells.lowest), highest=in_place(cells.highest))
 
 
 def observed_phasors(system: System, order: int, r: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -56,6 +111,8 @@ def observed_phasors(system: System, order: int, r: np.ndarray, x: np.ndarray) -
     zero = np.zeros((r.size, 1))
     drift = np.diff(x, axis=1, prepend=zero + general.base.get(order, 0.0))
     acceleration = -((order * r[:, np.newaxis]) ** 2) * x
+    if general.points is not None:
+        return np.hstack((drift, acceleration, np.full((r.size, 1), np.nan)))
     base = (acceleration @ system.modes.mass.sum(axis=0))[:, np.newaxis]
     if not general.base:
         base = base - np.sum(general.forces.get(order, 0.0))

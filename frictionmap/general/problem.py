@@ -8,6 +8,7 @@ from .._kernels.general.problem import FLAT, Law, Problem
 from ..errors import InputError
 from ..model.friction_law import FrictionLaw
 from ..model.general import LOOP, ContactSystem, refuse_law
+from ..model.points import Points
 from ..model.system import System
 from .certificate import certified_friction
 
@@ -28,6 +29,15 @@ class Channel(NamedTuple):
     base: np.ndarray  # (N,) displacement of the walls
     normal: np.ndarray  # (N,) variation of the normal loads
     rate: bool = False  # whether r times the derivative of these phasors drives
+    place: np.ndarray | None = None  # (p,) displacement of points beside that by modes
+
+
+class PointRows(NamedTuple):
+    """Displacements of points of a structure given by modes, as sums of series."""
+
+    shapes: np.ndarray  # (p, m) per mode
+    loads: np.ndarray  # (p, D) per channel
+    forces: np.ndarray  # (p, N) per friction force
 
 
 class ModalSystem(NamedTuple):
@@ -40,6 +50,16 @@ class ModalSystem(NamedTuple):
     mass: np.ndarray  # (n, n)
     stiffness: np.ndarray
     viscous: np.ndarray  # C1
+    points: PointRows | None = None  # of a structure given by modes
+
+    def displacements(self, q: np.ndarray, loads: np.ndarray, forces: np.ndarray) -> np.ndarray:
+        """Displacements of the masses, or points, from those of modes (m, k), channels (D, k), and forces
+        (N, k).
+        """
+        if self.points is None:
+            return np.asarray(self.phi @ q)
+        rows = self.points
+        return np.asarray(rows.shapes @ q + rows.loads @ loads + rows.forces @ forces)
 
 
 def general_of(system: System) -> ContactSystem:
@@ -60,16 +80,34 @@ def modal_system(system: System) -> ModalSystem:
         64.0 * np.finfo(float).eps * np.linalg.norm(phi, axis=0) * np.linalg.norm(vectors, axis=1)[:, None]
     )
     chi[np.abs(chi) <= small] = 0.0
-    return ModalSystem(w**2, phi, damping, chi, modes.mass, modes.stiffness, modes.damping)
+    found = ModalSystem(w**2, phi, damping, chi, modes.mass, modes.stiffness, modes.damping)
+    if general.points is None:
+        return found
+    points, channels = general.points, channels_of(system, found)
+    places = [np.zeros(system.n) if one.place is None else one.place for one in channels]
+    return found._replace(points=PointRows(points.shapes @ phi, np.array(places).T, -points.of_contacts))
+
+
+def _channels_of_points(points: Points) -> list[Channel]:
+    """A channel for every point under load: it pushes modes, and by the residual moves points."""
+    found = []
+    residual = np.zeros((len(points.shapes),) * 2) if points.residual is None else points.residual
+    for row in points.loaded:
+        phasors = {order: complex(load[row]) for order, load in points.loads.items() if load[row] != 0.0}
+        place = residual[row]
+        found.append(
+            Channel(phasors, points.shapes[row], -(points.vectors @ place), 0.0 * points.own, place=place)
+        )
+    return found
 
 
 def channels_of(system: System, modal: ModalSystem) -> list[Channel]:
     """The functions of time that drive a system."""
     general = general_of(system)
-    n, count = system.n, general.count
+    n, count = len(modal.mass), general.count
     none, still = np.zeros(n), np.zeros(count)
-    found = []
-    for row in range(n):
+    found = [] if general.points is None else _channels_of_points(general.points)
+    for row in range(n if general.points is None else 0):
         phasors = {order: complex(v[row]) for order, v in general.forces.items() if v[row] != 0.0}
         if phasors:
             found.append(Channel(phasors, np.eye(n)[row], still, still))
@@ -138,6 +176,8 @@ def is_symmetric(general: ContactSystem) -> bool:
 def static_offset(system: System) -> tuple[np.ndarray, np.ndarray]:
     """Displacements in the contacts (N,) and of the masses (n,) under the constant loads."""
     general, modes = general_of(system), system.modes
+    if general.points is not None:
+        return general.points.static(modes.w)
     if system.rigid_modes:  # the place of which is arbitrary: that with the masses' centre at 0
         elastic = modes.phi[:, system.rigid_modes :] / modes.w[system.rigid_modes :]
         x = elastic @ (elastic.T @ general.offset)
@@ -148,7 +188,7 @@ def static_offset(system: System) -> tuple[np.ndarray, np.ndarray]:
 
 def springs(general: ContactSystem) -> np.ndarray:
     """Stiffness of every contact, 0 where it is rigid, (N,)."""
-    return np.array([group.stiffness or 0.0 for group in general.groups])
+    return general.stiffnesses
 
 
 def refuse_loop(general: ContactSystem) -> None:

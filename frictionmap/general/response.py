@@ -15,7 +15,13 @@ from ..model.settings import HARMONICS, RECORDED, Solver
 from ..model.system import System
 from .boundaries import find_boundaries
 from .cycle import cycle_values
-from .dataset import boundary_variables, contact_coordinates, refuse_static, segments_of
+from .dataset import (
+    boundary_variables,
+    contact_coordinates,
+    mass_coordinates,
+    refuse_static,
+    segments_of,
+)
 from .observed import wants_further
 from .outputs import TABLE, is_wanted, output_values
 from .problem import general_of, static_offset
@@ -26,14 +32,16 @@ from .still import still_masses
 
 def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarray]:
     """Motion of masses and contacts over tau, and the forces in the contacts."""
-    general, modal = general_of(system), steps.modal
+    general = general_of(system)
     offset_z, offset_x = static_offset(system)
-    z = steps.at("z", tau) + offset_z[:, np.newaxis]
+    x, v = steps.displacements(tau), steps.displacements(tau, 1)
+    g = steps.at("z", tau)
+    z = (g if general.points is None else general.points.vectors @ x) + offset_z[:, np.newaxis]
     friction = steps.at("f", tau)
     k, _ = steps.places(tau)
     found = {
-        "x": modal.phi @ steps.at("q", tau) + offset_x[:, np.newaxis],
-        "v": modal.phi @ steps.at("q", tau, 1),
+        "x": x + offset_x[:, np.newaxis],
+        "v": v,
         "z": z,
         "friction": friction,
         "direction": steps.senses[k].T.astype(np.int8),
@@ -43,13 +51,14 @@ def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarr
     kt = steps.problem.spring[:, np.newaxis]
     if kt.any():
         belt = steps.problem.belt[:, np.newaxis] * tau
-        found["y"] = np.where(kt > 0.0, z - friction / np.where(kt > 0.0, kt, 1.0), np.nan) - belt
+        y = g + offset_z[:, np.newaxis] - friction / np.where(kt > 0.0, kt, 1.0)
+        found["y"] = np.where(kt > 0.0, y, np.nan) - belt
     return found
 
 
 def _load(general: ContactSystem, tau: np.ndarray) -> np.ndarray:
     """Load over tau: the sum of those on all masses."""
-    phasors = {n: complex(vector.sum()) for n, vector in general.forces.items()}
+    phasors = {n: complex(vector.sum()) for n, vector in general.loads.items()}
     return sum((p * np.exp(1j * n * tau)).real for n, p in phasors.items()) + np.zeros_like(tau)
 
 
@@ -137,7 +146,6 @@ def general_response(
         variables["wall_speed_lim"] = label_variable("wall_speed_lim", speed)
     own: dict[str, Any] = {
         "tau": tau,
-        "dof": np.array(system.dofs.numbers),
         "harmonic": np.arange(HARMONICS + 1),
         "part": np.array(["real", "imaginary"]),
         "r": r,
@@ -147,6 +155,7 @@ def general_response(
     if general.has_law:
         own["segment"] = segments_of(general)
     coords = {name: coordinate(name, values) for name, values in own.items()}
+    coords |= mass_coordinates(system)
     ds = xr.Dataset(variables, coords=coords | contact_coordinates(system))
     if not steps.period:
         followed = int(np.ceil(steps.cycles))

@@ -88,7 +88,7 @@ def _participation(system: System, modal: ModalSystem, order: int, turn: np.ndar
     """
     general = general_of(system)
     u, by_damping = general.base.get(order, 0.0), modal.viscous.sum(axis=1)
-    load = general.forces.get(order, np.zeros(system.n)) + 0j * turn
+    load = general.forces.get(order, np.zeros(len(modal.mass))) + 0j * turn
     if any(group.base for group in general.groups):
         load = load + u * turn**2 * modal.mass.sum(axis=1)
         by_damping = -by_damping * (system.damping_reference != "base")

@@ -25,7 +25,7 @@ from .boundaries import friction_lines, stays_at_rest
 from .certificate import certified_beta
 from .held import least_static_friction
 from .maps import put_offset
-from .observed import observed_rows
+from .observed import observed_rows, of_contacts_last
 from .outputs import allocate, drifts
 from .problem import ModalSystem, general_of, problem_of
 from .recorded import recorded_state
@@ -93,6 +93,16 @@ class Steps:
         k, x = self.places(tau)
         return self.values(self.series[k, self.rows(name)], x[:, np.newaxis], order).T
 
+    def displacements(self, tau: np.ndarray, order: int = 0) -> np.ndarray:
+        """Displacements of the masses, or points, as of `at`."""
+        q, loads, forces = (self.at(name, tau, order) for name in "qLf")
+        return self.modal.displacements(q, loads, forces)
+
+    def displacement_harmonics(self, highest: int) -> np.ndarray:
+        """Harmonics of the displacements of the masses, or points, as of `harmonics`."""
+        q, loads, forces = (self.harmonics(name, highest) for name in "qLf")
+        return self.modal.displacements(q, loads, forces)
+
     def values(self, series: np.ndarray, x: np.ndarray, order: int) -> np.ndarray:
         """Values of series at x, or with `order` 1 derivatives by tau."""
         value = np.zeros(series.shape[:-1])
@@ -128,6 +138,7 @@ def _cells(system: System, problem: Problem, counts: np.ndarray, halves: int, re
     general = general_of(system)
     cells = allocate((1, 1, 1), general.count, len(record.masses), problem.law.speed.shape[1])
     store_motion(problem, cells, counts, halves, record)
+    cells = of_contacts_last(system, cells)
     put_offset(system, cells)
     put_still(general, cells.contact_regime, cells.lowest, cells.highest)
     return cells

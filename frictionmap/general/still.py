@@ -20,10 +20,14 @@ def still_masses(general: ContactSystem, rests: np.ndarray) -> np.ndarray:
     holding = rests & ~general.elastic & np.array([not group.base for group in general.groups])
     vectors = general.vectors[holding]
     n = general.vectors.shape[1]
+    rows = np.eye(n) if general.points is None else general.points.shapes
     if not len(vectors):
-        return np.zeros(n, dtype=bool)
+        return np.zeros(len(rows), dtype=bool)
     span = np.linalg.qr(vectors.T)[0]  # the contacts are independent
-    return np.asarray(np.linalg.norm(np.eye(n) - span @ span.T, axis=0) <= _ROUNDING)
+    if general.points is None:
+        return np.asarray(np.linalg.norm(rows - span @ span.T, axis=0) <= _ROUNDING)
+    rest = np.linalg.norm(rows - rows @ span @ span.T, axis=1)
+    return np.asarray(rest <= _ROUNDING * np.linalg.norm(rows, axis=1))
 
 
 def put_still(

@@ -11,6 +11,7 @@ friction_law        friction over the sliding speed: break points, formulas brou
 normal_contact      normal force that moves with the structure, with separation
 spring_element      piecewise linear springs: gaps, backlash, bilinear springs
 contact             a contact with its spring, belt and normal load
+points              points of a structure given by modes, and its residual flexibility
 general             systems with several contacts or harmonics: checks, parallel contacts, loops
 sizes               sizes of steady states that a design is about
 phasors             complex arrays as pairs of real ones, which are rounded alike at any position
@@ -22,6 +23,7 @@ rigid_modes         structures that no spring holds at a place
 matrices            mass, stiffness and damping matrices: small, dense, definite
 decoupling          the error of neglecting the damping that couples modes
 coupled_modes       structures whose damping couples their modes: responses to loads
+given_modes         structures that are given by modes: their definition, the argument `modes` of a system
 system              `System`: structure, damping, load, contact, and their valid values
 sectors             cyclic structures: a ring of sectors, each given once
 variations          further axes of a study: parameters of a system that vary

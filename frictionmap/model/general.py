@@ -31,6 +31,7 @@ from .periodic_load import (
     scalar_harmonics,
     waveform,
 )
+from .points import Points
 from .spring_element import Spring, SpringElement
 
 #: Keys of a system that only this engine takes.
@@ -174,6 +175,7 @@ class ContactSystem:
     loop: str = ""  # numbers of the rigid contacts that close a loop; empty without one
     free: bool = False  # whether the structure has rigid-body modes; set by the system
     springs: tuple[SpringElement, ...] = ()  # piecewise linear ones
+    points: Points | None = None  # of a structure given by modes: then n counts modes
 
     @property
     def count(self) -> int:
@@ -193,6 +195,41 @@ class ContactSystem:
             more = np.vstack((found, vector))
             found = more if _rank(more) == len(more) else found
         return found
+
+    @property
+    def stiffnesses(self) -> np.ndarray:
+        """Stiffness of every contact, with the flexibility of modes left out; 0 where it is rigid; (N,)."""
+        own = np.array([group.stiffness or 0.0 for group in self.groups])
+        if self.points is None or self.points.residual is None:
+            return own
+        return np.asarray(1.0 / (1.0 / own + self.points.own))
+
+    @property
+    def loads(self) -> Mapping[int, np.ndarray]:
+        """Phasors of the loads on the masses, or points, by order."""
+        return self.forces if self.points is None else self.points.loads
+
+    @property
+    def constant_loads(self) -> np.ndarray:
+        """Constant loads on the masses, or points, (n,)."""
+        return self.offset if self.points is None else self.points.offset
+
+    def displacements(self, order: int, motion: np.ndarray, forces: np.ndarray) -> np.ndarray:
+        """Displacements of the masses, or points, by a harmonic motion (n_r, n) and forces (n_r, N)."""
+        return motion if self.points is None else self.points.displacements(order, motion, forces)
+
+    def in_modes(self, points: Points) -> "ContactSystem":
+        """The same contacts and loads of points, as they act on the modes."""
+        shapes = points.shapes
+        groups = tuple(replace(group, vector=shapes.T @ group.vector) for group in self.groups)
+        return replace(
+            self,
+            groups=groups,
+            forces={n: shapes.T @ force for n, force in self.forces.items()},
+            offset=shapes.T @ self.offset,
+            loop=_describe_loop(groups),
+            points=points,
+        )
 
     @property
     def rows(self) -> list[int]:
@@ -281,6 +318,7 @@ def refuse_general(system: Definition, what: str) -> None:
     what : words after "cannot", such as "compute peak thresholds"
     """
     if system.general is not None:
+        refuse_modes(system, what)
         if system.general.free:
             raise InputError(
                 f"cannot {what} of a free structure: this is offered where springs hold it at a place; add a "
@@ -290,6 +328,15 @@ def refuse_general(system: Definition, what: str) -> None:
         raise InputError(
             f"cannot {what} of a system with {used[0]}: this is offered for one rigid contact under one "
             f"harmonic load; omit {used[0]}"
+        )
+
+
+def refuse_modes(system: Definition, what: str) -> None:
+    """Refuse a structure given by modes; `what`: words after "cannot", such as "compute spectra"."""
+    if system.general is not None and system.general.points is not None:
+        raise InputError(
+            f"cannot {what} of a structure given by modes: this is offered for chains and matrices; give "
+            f"matrices M and K"
         )
 
 
@@ -432,6 +479,7 @@ def _describe_loop(groups: Sequence[MergedContact]) -> str:
     if not rigid:
         return ""
     w = np.array([groups[k].vector for k in rigid])
+    w = w / np.abs(w).max(axis=1, keepdims=True)  # in modes, entries have any size
     rank = _rank(w)
     if rank == len(rigid):
         return ""
@@ -617,11 +665,12 @@ def _describe_group(group: MergedContact, dofs: Dofs) -> str:
     one = group.first
     masses: tuple = one.masses  # type: ignore[assignment]
     a, b = (dofs.word(dofs.number(mass, "masses")) for mass in (masses[0], masses[-1]))
-    mass = "the mass" if dofs.n == 1 else f"mass {b}"
+    several = "masses" if dofs.noun == "mass" else f"{dofs.noun}s"
+    mass = "the mass" if dofs.n == 1 and dofs.noun == "mass" else f"{dofs.noun} {b}"
     words = {
         "fixed-wall": f"friction between {mass} and a fixed wall",
         "joined-base-wall": f"friction between {mass} and a wall that moves with the base",
-        "between-masses": f"friction between masses {a} and {b}",
+        "between-masses": f"friction between {several} {a} and {b}",
     }[one.kind]
     more = []
     if one.stiffness is not None:

@@ -15,6 +15,7 @@ from ..structures.accuracy import Accuracy
 from ..structures.craig_bampton import Reduce, checked_reduce
 from ..structures.dofs import Dofs
 from ..structures.files import NAMES
+from ..structures.modes import Modes
 from ..structures.reduction import Reduction, reduce_structure
 from ..structures.structure import Structure, read_structure
 from .contact import CONTACTS, Contact, numbers
@@ -36,6 +37,7 @@ from .general import (
     refuse_phases,
     uses_general,
 )
+from .given_modes import ModesArgument, damping_of, describe_modes, modes_of, on_modes
 from .html import as_table
 from .matrices import Matrices, full_matrices, reduced_matrices
 from .modes import (
@@ -186,8 +188,14 @@ class System(Shown):
     frequency_scale : float, optional
         With matrices: r = omega/frequency_scale, in the units of sqrt(K/M); default: the first natural
         frequency, before any reduction, of those above 0.  For a chain it is sqrt(k_1/m_1).
-    stiffness_scale : float
-        With matrices: displacements are in P/stiffness_scale, in the units of K.  For a chain it is k_1.
+    stiffness_scale : float, optional
+        With matrices or modes: displacements are in P/stiffness_scale, in the units of K; default: 1, for
+        beams and plates m omega_1^2 with their mass.  For a chain it is k_1.
+    modes : Modes, Beam, Plate or mapping, optional
+        Instead of matrices: natural frequencies and shapes at named points, with contacts, loads and outputs
+        at these.  contact_masses, load_mass and the masses of contacts are names of points.  A residual
+        flexibility is offered with one contact, which has a stiffness.  The attribute of this name is the
+        modal model of any system.
     excitation : {"force", "base"}, optional
         "base": the structure stands on a base that moves by Y cos(tau), and P = stiffness_scale Y (k_1 Y for
         a chain); all degrees of freedom of given matrices are then displacements in the direction of the base
@@ -259,9 +267,9 @@ class System(Shown):
     stiffness_ratios: Sequence[float] | None = None
     damping_ratios: float | Sequence[float] | None = None
     _: KW_ONLY
-    matrices: str | os.PathLike | Mapping[str, Any] | Structure | Matrices | None = None
+    matrices: str | os.PathLike | Mapping[str, Any] | Structure | Matrices | Modes | None = None
     frequency_scale: float | None = field(default=None, compare=False)  # `_scale` holds the resulting value
-    stiffness_scale: float = 1.0
+    stiffness_scale: float = None  # type: ignore[assignment]  # filled: 1, or that of a beam or plate
     excitation: Literal["force", "base"] | None = None
     damping_reference: Literal["ground", "base"] = "ground"
     load: Sequence[complex] | None = None
@@ -282,11 +290,13 @@ class System(Shown):
     load_offset: Sequence[float] | None = None
     dampers: Sequence[float] | None = None
     springs: Sequence[Spring | Mapping[str, Any]] | None = None
+    modes: ModesArgument = field(default=ModesArgument(), compare=False, repr=False)
     _scale: float | None = field(default=None, init=False, repr=False)
     _contact_system: ContactSystem = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         previous = self.matrices.reduction if isinstance(self.matrices, Matrices) else None
+        self._take_modes()
         if self.matrices is None:
             self._check_chain()
         else:
@@ -311,6 +321,9 @@ class System(Shown):
         if scale is None and self.reduction is not None:  # r does not depend on the reduction
             scale = self.reduction.first_frequency
         self._set("_scale", scale)
+        if isinstance(self.matrices, Modes):
+            modes, frequency = self.matrices, self._frequency_scale
+            self._set("_contact_system", on_modes(self, modes, self._contact_system, frequency))
         self._check_damping()
         if self.reduce is not None and self.rigid_modes:
             raise InputError(
@@ -327,13 +340,26 @@ class System(Shown):
     def _filled(self) -> Mapping[str, object]:
         one = (1.0,) if self.matrices is None and self.n == 1 else None
         return {
+            "stiffness_scale": 1.0,
             "contact_masses": (1,), "load_mass": 1, "mass_ratios": one, "stiffness_ratios": one,
-            "damping_ratios": None if self.dampers else (0.0,) * self.n,
+            "damping_ratios": None if self.dampers else (0.0,) * self._mode_count,
             "excitation": "base" if self.contact == "joined-base-wall" else "force",
         }  # fmt: skip
 
     def _set(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
+
+    def _take_modes(self) -> None:
+        """Take the argument `modes` as the structure; fill the default of stiffness_scale."""
+        given, scale = self.__dict__.pop("given_modes"), 1.0
+        if given is not None:
+            modes, scale = modes_of(self, given)
+            if modes is not None:
+                modes, ratios = damping_of(modes, self.damping_ratios)
+                self._set("matrices", modes)
+                self._set("damping_ratios", ratios)
+        if self.stiffness_scale is None:
+            self._set("stiffness_scale", scale)
 
     def _check_chain(self) -> None:
         for name in ("reduce", "rayleigh", "decouple"):
@@ -370,7 +396,11 @@ class System(Shown):
                     f"= {checks.one_line(given)} with matrices: both define the structure; omit one",
                 )
         given = self.matrices
-        if isinstance(given, Matrices):
+        if isinstance(given, Modes):
+            for name in ("reduce", "rayleigh", "decouple"):
+                if getattr(self, name) is not None:
+                    raise InputError("cannot use", name, "with modes: it is for matrices; omit one")
+        elif isinstance(given, Matrices):
             if given.reduction is not None:
                 self._set("matrices", given.reduction.structure)
                 self._set("reduce", self.reduce or given.reduction.asked)
@@ -432,7 +462,7 @@ class System(Shown):
                 if ratios is not None:
                     raise InputError("cannot use", name, "with matrices: C defines the damping; omit one")
         elif self.rayleigh is None:
-            self._set("damping_ratios", _damping(0.0 if given is None else given, self.n))
+            self._set("damping_ratios", _damping(0.0 if given is None else given, self._mode_count))
 
     def _check_contact(self) -> None:
         if self.contacts is not None:
@@ -487,6 +517,11 @@ class System(Shown):
             )
 
     @property
+    def by_modes(self) -> bool:
+        """Whether the structure is given by modes."""
+        return isinstance(self.matrices, Modes)
+
+    @property
     def contact_system(self) -> ContactSystem:
         """All contacts and loads, whichever keys they are given by."""
         return self._contact_system
@@ -494,7 +529,8 @@ class System(Shown):
     @property
     def general(self) -> ContactSystem | None:
         """Data of the general engine; None for one rigid contact under one harmonic load."""
-        return self._contact_system if uses_general(self) or self.rigid_modes else None
+        by_modes = self._contact_system.points is not None
+        return self._contact_system if uses_general(self) or self.rigid_modes or by_modes else None
 
     @property
     def spring_elements(self) -> tuple[SpringElement, ...]:
@@ -504,7 +540,7 @@ class System(Shown):
     @property
     def rigid_modes(self) -> int:
         """Number of rigid-body modes, against which no spring acts: 0 unless the structure is free."""
-        if isinstance(self.matrices, Matrices):
+        if isinstance(self.matrices, Matrices | Modes):
             return self.matrices.rigid_modes
         return int(self.matrices is None and self.stiffness_ratios[0] == 0.0)  # type: ignore[index]
 
@@ -531,13 +567,18 @@ class System(Shown):
 
     @property
     def n(self) -> int:
-        """Number of masses (degrees of freedom)."""
+        """Number of masses (degrees of freedom), or of points of a structure given by modes."""
         return self.dofs.n
+
+    @property
+    def _mode_count(self) -> int:
+        """Number of modes."""
+        return self.matrices.w.size if isinstance(self.matrices, Modes) else self.n
 
     @property
     def dofs(self) -> Dofs:
         """Numbers or labels of the masses: counted from 1, or as in the file, possibly with gaps."""
-        if isinstance(self.matrices, (Structure, Matrices)):
+        if isinstance(self.matrices, (Structure, Matrices, Modes)):
             return self.matrices.dofs
         return Dofs.counted(len(self.mass_ratios))  # type: ignore[arg-type]
 
@@ -598,6 +639,8 @@ class System(Shown):
         words = {}
         reduced, decoupled = self.accuracy(r), self.decoupling(r)
         where = f", for r = {r[0]:g} to {r[-1]:g}"
+        if self.by_modes:
+            words["modes"] = describe_modes(self)
         if reduced is not None:
             words["reduction"] = f"{reduced.describe()}{where}; {reduced.beyond()}"
         if decoupled is not None:
@@ -624,7 +667,8 @@ class System(Shown):
     @property
     def normalised(self) -> bool:
         """Whether the system is one unit mass on a unit spring, as the formulas for one mass assume."""
-        return self.n == 1 and self.modes.mass[0, 0] == 1.0 == self.modes.stiffness[0, 0]
+        one = self.n == 1 == self._mode_count
+        return one and self.modes.mass[0, 0] == 1.0 == self.modes.stiffness[0, 0]
 
     @property
     def omega_1(self) -> float:
@@ -636,6 +680,8 @@ class System(Shown):
         """Frequency omega at r = 1 of a structure given by matrices."""
         if self._scale is not None:
             return self._scale
+        if isinstance(self.matrices, Modes):
+            return float(self.matrices.frequencies[0])
         assert isinstance(self.matrices, Matrices)
         if self.rigid_modes == self.n:
             raise InputError(
@@ -649,6 +695,8 @@ class System(Shown):
         """Solve for frequencies and modes; refuse if the lowest frequency is below the rounding error of the
         highest.
         """
+        if isinstance(self.matrices, Modes):
+            return self.matrices.w / self._frequency_scale, mass.copy()  # the coordinates are the modes
         if self.matrices is None and self.n > 1:
             w, phi = solve_chain_modes(np.array(self.mass_ratios), np.array(self.stiffness_ratios))
         else:
@@ -665,7 +713,10 @@ class System(Shown):
         return w, phi
 
     def _structure(self) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
-        """Dimensionless M, K and, where it was given, C1."""
+        """Dimensionless M, K and, where it was given, C1; in modes of a structure given by them."""
+        if isinstance(self.matrices, Modes):
+            w = self.matrices.w / self._frequency_scale
+            return np.eye(w.size), np.diag(w**2), None
         if isinstance(self.matrices, Matrices):
             mass, stiffness, damping = self.matrices.scaled(self._frequency_scale, self.stiffness_scale)
             if self.n == 1 and self._scale is None:
@@ -677,6 +728,9 @@ class System(Shown):
 
     def _load_vector(self, stiffness: np.ndarray) -> np.ndarray:
         """Part of p that does not depend on r, complex (n,)."""
+        if isinstance(self.matrices, Modes):
+            none = np.zeros(self._mode_count, dtype=complex)
+            return np.array(self._contact_system.forces.get(1, none))
         if self.load is not None:
             return np.array(self.loads)
         if self.excitation == "base" and self.matrices is not None:
@@ -729,12 +783,12 @@ class System(Shown):
         return _DampedModes(w, phi, zeta, left_out=Decoupling(given, self.decouple))
 
     @cached_property
-    def modes(self) -> ModalModel:
+    def modal_model(self) -> ModalModel:
         """Modes and participation factors; they do not depend on r."""
         mass, stiffness, _ = self._structure()
         w, phi, zeta, coupled, _ = self._damped_modes
         parts: dict[str, Any] = {
-            "contact": self.contact_vector,
+            "contact": self._contact_system.groups[0].vector if self.by_modes else self.contact_vector,
             "load": self._load_vector(stiffness),
             "base_motion": self.base_motion,
             "mass": mass,
@@ -776,7 +830,8 @@ class System(Shown):
         """
         r = np.asarray(r, dtype=float)
         flat = r.ravel()
-        found = self.modes.held_load(flat) if self.n > 1 else self.modes.relative_load(flat)[:, 0]
+        several = self.modes.w.size > 1
+        found = self.modes.held_load(flat) if several else self.modes.relative_load(flat)[:, 0]
         return found.reshape(r.shape)
 
     def describe(self) -> str:
@@ -811,6 +866,8 @@ class System(Shown):
         return as_table("System", rows)
 
     def _describe_structure(self) -> str:
+        if isinstance(self.matrices, Modes):
+            return self._describe_modes(self.matrices)
         if isinstance(self.matrices, Matrices):
             plural = "s" if self.n > 1 else ""
             source = f" from {self.matrices.source}" if self.matrices.source else ""
@@ -827,8 +884,20 @@ class System(Shown):
         springs = _format_values(self.stiffness_ratios)  # type: ignore[arg-type]
         return f"chain of {self.n} masses ({masses}), springs ({springs})"
 
+    def _describe_modes(self, modes: Modes) -> str:
+        """Describe a structure given by modes."""
+        plural, many = "s" * (modes.w.size > 1), "s" * (self.n > 1)
+        source = f" of the {modes.source}" if modes.source else ""
+        points = self._contact_system.points
+        residual = " and residual flexibility" * (points is not None and points.residual is not None)
+        first = " (the first natural frequency)" if self.frequency_scale is None else ""
+        return (
+            f"{modes.w.size} mode{plural}{residual}{source} at {self.n} point{many}, r = omega/"
+            f"{self._frequency_scale:g}{first}, displacements in P/{self.stiffness_scale:g}"
+        )
+
     def _describe_load(self) -> str:
-        one = self.n == 1
+        one = self.n == 1 and not self.by_modes
         if self.contact_system.orders != (1,):
             return f"periodic load, harmonics {format_orders(self.contact_system.orders)}"
         if self.excitation == "base":
@@ -842,13 +911,15 @@ class System(Shown):
             where = "the mass" if one else "the masses"
             return f"harmonic load ({_format_values(self.load)}) on {where}"
         return (
-            "harmonic load on the mass" if one else f"harmonic load on mass {self.dofs.word(self.load_mass)}"  # type: ignore[arg-type]
+            "harmonic load on the mass"
+            if one
+            else f"harmonic load on {self.dofs.noun} {self.dofs.word(self.load_mass)}"  # type: ignore[arg-type]
         )
 
     def _describe_damping(self) -> str:
         if not self.modes.zeta.any():
             return "no viscous damping"
-        if self.n == 1:
+        if self._mode_count == 1:
             return f"damping ratio {self.zeta:g}"
         if self.rayleigh is not None:
             zeta, (a, b) = self.modes.zeta, self.rayleigh

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from .. import checks
 from ..errors import InputError
 from ..jobs import Progress
+from ..model.general import refuse_modes
 from ..model.system import System
 from ..units.axes import ratios, require
 from ..units.scales import Scales, Units, scales_of
@@ -47,6 +48,7 @@ def checked(
     InputError
         An axis is invalid, or motions without a load are not offered for the system.
     """
+    refuse_modes(system, "compute motions without a load")
     belts = belts_of(system)
     scales = scales_of(units, system)
     require(scales, wall_speed=("velocity", wall_speed), beta=("force", beta))

@@ -10,6 +10,9 @@ from .. import checks
 from ..errors import InputError
 from .entries import Label
 
+#: What the degrees of freedom of a structure given by modes are.
+POINT = "point"
+
 
 @dataclass(frozen=True)
 class Dofs:
@@ -17,10 +20,12 @@ class Dofs:
 
     numbers : increasing, from 1; with gaps where rows of the file were left out
     labels : node and degree of freedom at it, or names, if the file has them
+    noun : what they are: masses, or points of a structure given by modes
     """
 
     numbers: tuple[int, ...]
     labels: tuple[Label | str, ...] | None = None
+    noun: str = "mass"
 
     @classmethod
     @lru_cache(maxsize=16)  # a system asks for them with every call
@@ -41,7 +46,7 @@ class Dofs:
     def at(self, rows: Sequence[int] | np.ndarray) -> "Dofs":
         """Select the degrees of freedom of some rows, increasing."""
         labels = None if self.labels is None else tuple(self.labels[row] for row in rows)
-        return Dofs(tuple(self.numbers[row] for row in rows), labels)
+        return Dofs(tuple(self.numbers[row] for row in rows), labels, self.noun)
 
     @cached_property
     def _rows(self) -> dict[int, int]:
@@ -76,6 +81,12 @@ class Dofs:
         if isinstance(given, str) and self.labels is not None:
             if given not in self._labelled:
                 words = list(self._labelled)
+                if self.noun == POINT:
+                    raise InputError(
+                        name,
+                        f"must be one of the points {', '.join(words)}; got {checks.one_line(given)}"
+                        f"{checks.nearest(given, words)}",
+                    )
                 raise InputError(
                     name,
                     f"must be a number, or a label of the file such as {words[0]} or "
@@ -92,9 +103,11 @@ class Dofs:
         return found
 
     def word(self, number: int) -> str:
-        """A number, with its label."""
+        """A number, with its label; of points the label alone."""
         if self.labels is None:
             return str(number)
+        if self.noun == POINT:
+            return _written(self.labels[self.row(number)])
         return f"{number} ({_written(self.labels[self.row(number)])})"
 
 

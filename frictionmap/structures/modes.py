@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from .dofs import Dofs
+from .dofs import POINT, Dofs
 
 #: Modes at most, rigid-body modes among them.
 MOST_MODES = 200
@@ -62,6 +62,7 @@ class Modes:
     compliance: Any = None
     source: str = ""
     imaginary: float = 0.0  # largest part of a complex shape that was left out
+    optional: bool = False  # whether the residual may be left out where contacts are rigid
 
     def __post_init__(self) -> None:
         w = checks.array(self.w, "modes: w")
@@ -189,7 +190,7 @@ class Modes:
     @property
     def dofs(self) -> Dofs:
         """The points, by number and by name."""
-        return Dofs.counted(len(self.points), self.points)
+        return Dofs(tuple(range(1, len(self.points) + 1)), self.points, POINT)
 
     def _content(self) -> tuple[Any, ...]:
         arrays = (self.w, self.zeta, self.shapes, self.residual)

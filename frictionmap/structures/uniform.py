@@ -60,8 +60,9 @@ class Beam:
         Points with contacts, loads or outputs, by name: their distances from the left end.
     modes : int
         Number of elastic modes, 1 to 200.
-    with_residual : bool
-        Whether the flexibility of all other modes is added, which needs contacts with a stiffness.
+    with_residual : bool, optional
+        Whether the flexibility of all other modes is added, which needs a contact with a stiffness.  Default:
+        where no contact is rigid.
 
     Raises
     ------
@@ -88,7 +89,7 @@ class Beam:
     height: Any = None
     diameter: Any = None
     density: Any = None
-    with_residual: bool = True
+    with_residual: bool | None = None
 
     def __post_init__(self) -> None:
         self._put("length", _positive(self.length, "length"))
@@ -215,8 +216,9 @@ class Plate:
         Points with contacts, loads or outputs, by name: [x, y].
     modes : int
         Number of elastic modes, 1 to 100.
-    with_residual : bool
-        Whether the flexibility of all other modes is added, which needs contacts with a stiffness.
+    with_residual : bool, optional
+        Whether the flexibility of all other modes is added, which needs a contact with a stiffness.  Default:
+        where no contact is rigid.
 
     Raises
     ------
@@ -240,7 +242,7 @@ class Plate:
     modes: int = 12
     E: Any = None
     density: Any = None
-    with_residual: bool = True
+    with_residual: bool | None = None
 
     def __post_init__(self) -> None:
         size = checks.array(self.size, "size")
@@ -394,6 +396,7 @@ def _as_modes(owner: Beam | Plate) -> Modes:
         None,
         np.hstack((rigid, owner.shapes)),
         tuple(owner.points),
-        owner.residual if owner.with_residual else None,
+        None if owner.with_residual is False else owner.residual,
         source=owner.describe(),
+        optional=owner.with_residual is None,
     )

@@ -7,6 +7,7 @@ to `Units`.  All other numbers become ratios to the reference values of `Scales`
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from .. import checks
@@ -26,6 +27,7 @@ from .scales import (
     reference_scales,
     rounded,
 )
+from .structures import structure_as_modes, with_model_units
 from .table import PI
 
 #: Keys of [system] with a dimension, and what they measure.  [] stands for the place in a list; a list of
@@ -142,7 +144,8 @@ class _Model:
     @property
     def stiffness_scale(self) -> float:
         """Stiffness that displacements are over [N/m]."""
-        return float(self.table.get("stiffness_scale", 1.0))
+        given = self.table.get("stiffness_scale")
+        return self._system.stiffness_scale if given is None else checks.number(given, "stiffness_scale")
 
     @property
     def omega_1(self) -> float:
@@ -150,7 +153,12 @@ class _Model:
         given = self.table.get("frequency_scale")
         if given is not None:
             return checks.number(given, "frequency_scale", above=0.0)
-        return System(**_changed(self.table, "", "", lambda value, place: 1.0)).omega_1
+        return self._system.omega_1
+
+    @cached_property
+    def _system(self) -> System:
+        """The system with other numbers than those with units."""
+        return System(**_changed(self.table, "", "", lambda value, place: 1.0))
 
 
 def in_ratios(
@@ -247,7 +255,8 @@ def chain_in_ratios(
 
     table : keys of [system]; units : keys of `Units`; name : of the table, for messages
     """
-    changed, completed = dict(table), dict(units)
+    changed = structure_as_modes(table, name or "system")
+    completed = with_model_units(changed, units)
     springs = table.get("springs")
     if isinstance(springs, (list, tuple)) and not is_of_elements(springs):
         _refuse_elements(springs, f"{name}.springs".lstrip("."))

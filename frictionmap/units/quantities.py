@@ -17,9 +17,11 @@ from ..errors import InputError
 from .table import UNITS, known_unit, units_of
 
 #: A number with a decimal point, then its unit, with one space between them or none.  A unit begins with a
-#: letter, or is 1/s; that of a dashpot may have a space in it.
+#: letter, or is 1/s; those of dashpots and of bending stiffness have a space in them.
 NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-_TEXT = re.compile(rf"({NUMBER})(?: ?([A-Za-z\u00b5\u03bc]\S*(?: s/m{{1,2}}| s/in)?)| (1/s))")
+_TEXT = re.compile(
+    rf"({NUMBER})(?: ?([A-Za-z\u00b5\u03bc]\S*(?: s/m{{1,2}}| s/in| m{{1,2}}\^2| m{{1,2}})?)| (1/s))"
+)
 _NO_NUMBER = re.compile(r"[+-]?(nan|inf|infinity)\b", re.IGNORECASE)
 _COMMA = re.compile(r"[+-]?[0-9.]*,[0-9]")
 
@@ -35,12 +37,20 @@ EXAMPLES = {
     "viscosity": "3 N s/m",
     "rate": "0.1 1/s",
     "time": "0.5 s",
+    "bending stiffness": "21 N m^2",
+    "plate stiffness": "150 N m",
+    "modulus": "210 GPa",
+    "density": "7850 kg/m^3",
+    "mass per length": "0.78 kg/m",
+    "mass per area": "16 kg/m^2",
 }
 
 #: The units that other packages are asked to convert into; all of them know these.
 _ASKED = {
     "force": "N", "length": "m", "mass": "kg", "stiffness": "N/m", "acceleration": "m/s**2",
     "velocity": "m/s", "viscosity": "N*s/m", "rate": "1/s", "time": "s",
+    "bending stiffness": "N*m**2", "plate stiffness": "N*m", "modulus": "Pa", "density": "kg/m**3",
+    "mass per length": "kg/m", "mass per area": "kg/m**2",
 }  # fmt: skip
 
 #: Frequencies in other packages, by how they write their own unit: cycles, or angles, over time.  A plain

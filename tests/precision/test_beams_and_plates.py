@@ -20,7 +20,7 @@ X = np.array([0.0, 0.1, 0.25, 0.5, 0.8, 1.0])
 def exact_mode(ends, b):
     """The mode next to a root b as cosh, sinh, cos and sin, at 60 digits beyond what cosh b takes.
 
-    Returns the root, and a function of x with the displacement of unit modal mass but for its sign.
+    Returns the root, and a function of x with the displacement of unit modal mass, of either sign.
     """
     mpmath.mp.dps = 60 + int(2.0 * b / math.log(10.0))
 

@@ -21,7 +21,7 @@ from .laws.speed import has_law, steepest, velocity_unit
 from .orbits import NO_REPEAT, REPEATS, newton
 from .pattern import stop_exactly
 from .problem import SECTION, F, H, P, Q, R, padded, varies
-from .record import FORCES, HIGH, LOW, NOTHING, clear_record, displaced_by
+from .record import FORCES, HIGH, LOW, NOTHING, clear_record, displaced_by, pushed_by
 from .return_map import (
     begins_held,
     copy_motion,
@@ -611,4 +611,5 @@ def place_after_start(problem, friction, state, cycles, workspace, shift):
     _fill_moved(problem, places.change, places.moved)
     for i in range(shift.size):
         shift[i] = displaced_by(problem, record, places.moved, i)
+        shift[i] += pushed_by(problem, record, places.change, i)
     return True

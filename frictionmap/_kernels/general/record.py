@@ -4,14 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import entry, kernel
+from ..compiler import entry, inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, magnitude, store, total
 from .crossings import first_zero, next_turn, value_at
 from .events import MOST, Events, list_step, make_events
 from .laws.contact import moves_one_way
 from .laws.kinds import has_force
 from .laws.speed import has_law
-from .problem import LONG, SIZE, TERMS, WIDTH, H, R, first_contact_row, varies
+from .problem import LONG, SIZE, TERMS, WIDTH, H, R, first_contact_row, force_row, varies
 
 NOTHING, RANGES, STEPS, FORCES, EVENTS = 0, 1, 2, 3, 4
 
@@ -36,8 +36,8 @@ WEIGHTS = 0.5 * _LEGENDRE[1]
 class Record(NamedTuple):
     """Extremes of the displacements in N contacts, then of n masses, sums of displacements, or forces.
 
-    The rows of `masses` are their shares of the modes; more columns are shares of the channels, and whether a
-    row is a force: a sum of r^2 q'' and of channels.
+    The rows of `masses` are their shares of the modes; more columns are shares of the channels, then perhaps
+    those of the friction forces, and whether a row is a force: a sum of r^2 q'' and of channels.
     """
 
     active: np.ndarray  # (1,) int: NOTHING, RANGES, STEPS, FORCES or EVENTS
@@ -45,7 +45,7 @@ class Record(NamedTuple):
     distance: np.ndarray  # (N,) sliding distances
     slips: np.ndarray  # (3, N) sliding distances of single slips, see `_keep_slip`
     works: np.ndarray  # (2, N) work of friction, and of the walls that move at constant velocity
-    masses: np.ndarray  # (n, m) displacement of the masses per mode, or (n, m + D + 1)
+    masses: np.ndarray  # (n, m) displacement of the masses per mode, or (n, m + D + 1), (n, m + D + N + 1)
     steps: np.ndarray  # (most, rows, WIDTH) the series of every step
     patterns: np.ndarray  # (most, N + 1) sense of every contact, then the length of the step in x
     count: np.ndarray  # (1,) steps there were; more than `most` do not fit
@@ -328,6 +328,23 @@ def displaced_by(problem, record, moved, i):
     return sum_
 
 
+@inner_kernel
+def shares_of_forces(problem, record):
+    """Number of friction forces that displacements of masses have shares of: all or none."""
+    modes, channels = problem.push.shape
+    return max(0, record.masses.shape[1] - modes - channels - 1)
+
+
+@kernel
+def pushed_by(problem, record, change, i):
+    """Change of range i by changes of the friction forces (N,), beside that by modes."""
+    modes, channels = problem.push.shape
+    contacts, sum_ = problem.spring.size, 0.0
+    for j in range(shares_of_forces(problem, record) if i >= contacts else 0):
+        sum_ += record.masses[i - contacts, modes + channels + j] * change[j]
+    return sum_
+
+
 @kernel
 def _differentiate_twice(scratch, at, rate):
     """Replace a series by its second derivative, times a rate."""
@@ -352,6 +369,10 @@ def _finish_row(problem, row, motion, record, i):
         share = record.masses[i, modes + d]
         for k in range(WIDTH if share != 0.0 else 0):
             motion.scratch[_VALUE, k] += share * motion.series[modes + d, k]
+    for j in range(shares_of_forces(problem, record)):
+        share = record.masses[i, modes + channels + j]
+        for k in range(WIDTH if share != 0.0 else 0):
+            motion.scratch[_VALUE, k] += share * motion.series[force_row(problem, j), k]
     return size
 
 

@@ -143,7 +143,7 @@ def damping_of(modes: Modes, given: Any) -> tuple[Modes, Any]:
     if modes.zeta is None:
         return modes, given
     if given is not None:
-        raise InputError("cannot use", "damping_ratios", "with modes that have their own; omit one")
+        raise InputError("cannot use", "damping_ratios", "with modes: they have their own; omit one")
     return replace(modes, zeta=None), tuple(modes.zeta.tolist())
 
 

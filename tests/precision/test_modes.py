@@ -336,7 +336,7 @@ def test_a_beam_in_units(tmp_path):
     (lambda: fm.System(modes=fm.Modes([1.0], 0, [[1.0]], ["tip"]), rayleigh=[0.1, 0.1]),
      "cannot use rayleigh with modes: modes have damping_ratios"),
     (lambda: fm.System(modes=fm.Modes([1.0], 0.1, [[1.0]], ["tip"]), damping_ratios=0.1),
-     "cannot use damping_ratios with modes that have their own"),
+     "cannot use damping_ratios with modes: they have their own"),
     (lambda: fm.System(modes=fm.Modes([1.0], 0, [[1.0]], ["tip"], [[0.1]]), **TIP),
      "cannot use residual with the rigid contact fixed-wall 1"),
     (lambda: fm.System(modes=fm.Modes([1.0], 0, [[1.0]], ["tip"]), contact_masses=["top"]),

@@ -15,6 +15,7 @@ from frictionmap.units.axes import KINDS
 from frictionmap.units.dimensions import DIMENSIONS, OF_DESIGN, OF_MATRICES
 from frictionmap.units.quantities import NUMBER
 from frictionmap.units.scales import UNIT_KINDS
+from frictionmap.units.structures import STRUCTURES
 
 #: k1 = 500 N/mm, m1 = 40 kg, P = 100 N.
 UNITS = '[units]\nstiffness = "500 N/mm"\nmass = "40 kg"\nload = "100 N"\n'
@@ -141,6 +142,8 @@ def test_a_unit_of_another_kind_is_refused(configured, key):
 
 #: Numbers of a configuration without a dimension.
 DIMENSIONLESS = {
+    "system.beam.modes", "system.plate.modes", "system.plate.nu", "system.modes.damping_ratios",
+    "system.modes.damping_ratios[]",
     "system.mass_ratios[]", "system.stiffness_ratios[]", "system.damping_ratios", "system.damping_ratios[]",
     "system.contact_masses[]", "system.load_mass", "system.decouple", "system.harmonics",
     "system.reduce.keep[]", "system.reduce.modes", "system.reduce.allow",
@@ -185,7 +188,14 @@ OF_RECORD = {
 ENTRIES = {
     "system.matrices.M", "system.matrices.K", "system.matrices.C", "system.matrices.dofs",
     *(f"system.sectors.{name}" for name in ("mass", "stiffness", "coupling", "coupling[].stiffness")),
+    *(f"system.modes.{key}" for key in ("shapes", "residual", "compliance", "modal_masses")),
 }  # fmt: skip
+
+#: Numbers of beams, plates and modes, see `structures`.
+OF_STRUCTURES = {
+    *(f"system.{table}.{key}" for table, (_, kinds) in STRUCTURES.items() for key in kinds),
+    "system.modes.frequencies",
+}
 
 
 def leaves(schema, name):
@@ -216,7 +226,7 @@ def test_every_number_is_in_the_table_or_has_no_dimension():
     dimensional = {
         *(f"system.{key}" for key in of_system), *(f"grid.{key}" for key in KINDS),
         *(f"design.{key}" for key in OF_DESIGN), *(f"units.{key}" for key in UNIT_KINDS),
-        *OF_MOTIONS,
+        *OF_MOTIONS, *OF_STRUCTURES,
     }  # fmt: skip
     for name, unit in all_leaves():
         own = re.sub(r"(\[\]|\.(start|stop|step|num|values))+$", "", name)

@@ -83,7 +83,7 @@ def test_every_variable_is_in_the_examples(datasets):
     of_contacts = {
         *GENERAL_VARIABLES, "beta_stick_contact", "limiting_contact", "limit_kind", "beta_noslip",
         "no_stop_begin", "no_stop_end", "wall_velocity_lim", "y", "load", "event_contact", "contact",
-        "contact_name", "beta_slope_lim", "beta_slope_certificate", "wall_speed_lim",
+        "contact_name", "point_name", "beta_slope_lim", "beta_slope_certificate", "wall_speed_lim",
         "self_locking", "friction_lim", "friction_lim_kind",
     }  # fmt: skip
     of_contacts |= {

@@ -192,7 +192,7 @@ def _response(options: Options, config: "Config", output: "Output") -> None:
 def _belt_response(options: Options, config: "Config", output: "Output", mu: float) -> None:
     """Compute a motion on a belt without a load in time."""
     from ..files.belts import describe_belts
-    from ..steady.response import POINTS, response
+    from ..steady.response import response
 
     if config.wall_speed is None:
         raise InputError("cannot use --wall-speed with grid.r: it is for [grid] wall_speed; give --r instead")
@@ -204,7 +204,6 @@ def _belt_response(options: Options, config: "Config", output: "Output", mu: flo
         options.beta,
         mu,
         wall_speed=options.wall_speed,
-        points=POINTS,
         units=config.units,
     )
     output.fill(_finish(ds, config, options))

@@ -134,13 +134,6 @@ OF_CONTACTS = (
 
 #: Coordinates; the others are variables.
 AXES = (
-    *CELL,
-    "dof",
-    "time",
-    "time_s",
-    "contact",
-    "contact_name",
-    "wall_speed_m_s",
-    "friction_force",
+    *CELL, "dof", "time", "time_s", "contact", "contact_name", "wall_speed_m_s", "friction_force",
     "friction_coefficient",
-)
+)  # fmt: skip

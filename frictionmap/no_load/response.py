@@ -61,8 +61,8 @@ def belt_response(
     motion = ride.end_of(found, sliding, *starts(sliding, system, belts)[STARTS[start]])
     if motion.regime == regimes.UNRESOLVED:
         raise NoSteadyState(
-            f"no motion was found at wall_speed = {speed:g}, beta = {friction:g}, mu = {mu:g}: it chatters or "
-            "settles too slowly; change wall_speed or beta slightly"
+            f"no motion was found at wall_speed = {speed:g}, beta = {friction:g}, mu = {mu:g}: it chatters "
+            "or settles too slowly; change wall_speed or beta slightly"
         )
     values = _cell_values(motion) | _samples(ride, found, motion, points)
     values |= {"growth": np.array(sliding.growth), "growth_frequency": np.array(sliding.frequency)}
@@ -104,7 +104,7 @@ def _samples(ride: Ride, friction: Friction, motion: Motion, points: int) -> dic
         senses[:, k] = memory.motion.sense
     x, v = ride.modal.phi @ states[:, 0].T, ride.modal.phi @ states[:, 1].T / ride.h
     z = ride.modal.chi @ states[:, 0].T
-    of_contacts = {"z": z, "friction": forces, "direction": senses}
+    of_contacts: dict[str, np.ndarray] = {"z": z, "friction": forces, "direction": senses}
     if contacts == 1:
         of_contacts = {name: one[0] for name, one in of_contacts.items()}
     return {"time": np.linspace(0.0, whole, points), "x": x, "v": v, **of_contacts}

@@ -1,6 +1,6 @@
 """A configuration in the place of a system and its axes: `fm.sweep(fm.load_config("map.toml"))`."""
 
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -79,7 +79,7 @@ def system_and_axes(
     return Asked(system, r, beta, 1.0 if mu is None else mu, units, None)  # type: ignore[arg-type]
 
 
-def belt_speeds(system: object, wall_speed: ArrayLike | None, r: object) -> ArrayLike | None:
+def belt_speeds(system: object, wall_speed: Any, r: object) -> Any:
     """Belt speeds in the place of r, from an argument or a configuration; None under a load.
 
     Raises

@@ -49,7 +49,7 @@ def _checked_cell(r: object, beta: object, mu: object, scales: Scales) -> tuple[
 
 
 def _belt_motion(
-    system: System, cell: tuple, points: int, units: Units | None, settings: dict[str, Any]
+    system: System, cell: tuple[Any, Any, Any], points: int, units: Units | None, settings: dict[str, Any]
 ) -> xr.Dataset:
     """One motion without a load in time."""
     refuse_settings(settings)

@@ -222,9 +222,7 @@ def test_patterns_of_many_contacts_and_segments_are_not_confused(monkeypatch):
 
 def test_files_and_stores_have_the_shares_of_segments(tmp_path):
     pytest.importorskip("zarr")
-    system = pair(
-        fm.Contact(masses=1, law=FALLING), fm.Contact("between-masses", [1, 2], ratio=0.3, law=RISING), 0.1
-    )
+    system = fm.System(damping_ratios=0.1, contacts=[fm.Contact(law=RISING)])
     axes = {"mu": np.array([1.0]), "r": np.array([0.5, 0.9, 1.3]), "beta": np.array([0.1, 0.3])}
     solver = fm.Solver(outputs=["segment_fraction", "unique"])
     ds = fm.sweep(system, axes["r"], axes["beta"], solver=solver)
@@ -232,7 +230,7 @@ def test_files_and_stores_have_the_shares_of_segments(tmp_path):
     fill_store(tmp_path / "map.zarr", study_of(system, None, axes, solver), "map", in_this_process(1))
     for name in ("map.nc", "map.zarr"):
         with fm.open(tmp_path / name) as found:
-            assert found.segment_fraction.dims == ("mu", "r", "beta", "contact", "segment")
+            assert found.segment_fraction.dims == ("mu", "r", "beta", "segment")
             assert found.segment.values.tolist() == [1, 2, 3]
             for output in solver.outputs:
                 assert np.array_equal(found[output].values, ds[output].values, equal_nan=True)

@@ -1,5 +1,7 @@
 """Names, types and valid values of motions in time under records, and of their spectra."""
 
+import re
+
 import numpy as np
 
 from .. import regimes
@@ -130,6 +132,33 @@ MOTIONS = {
     "status": Label(np.int8, "how the motion ended", CELL, STATUSES),
 }  # fmt: skip
 
+#: Statistics of a stationary motion by their ends of names, and the quantities that have them.
+AVERAGES = {
+    "mean": "mean of the {}", "mean_error": "standard error of the mean of the {}",
+    "variance": "variance of the {}", "variance_error": "standard error of the variance of the {}",
+    "peak": "mean of the largest modulus of the {} in a window",
+    "peak_error": "standard error of the mean largest modulus of the {}",
+    "batch_correlation": "correlation of the means of neighbouring batches of the {}",
+}  # fmt: skip
+AVERAGED = {
+    "x": "length",
+    "v": "velocity",
+    "acceleration": "acceleration",
+    "z": "length",
+    "friction": "force",
+}
+
+
+def _average(of: str, end: str) -> Label:
+    words, _, over = MOTIONS[of].long_name.partition(", ")
+    least = 0.0 if end.startswith("peak") or end.endswith("error") or end == "variance" else -np.inf
+    squared = f", squared {over}" if "variance" in end else f", {over}"
+    dims = [dim for dim in MOTIONS[of].dims[len(CELL) :] if dim != "time"]
+    return _real(AVERAGES[end].format(words) + ("" if "correlation" in end else squared), *dims, least=least)
+
+
+MOTIONS |= {f"{of}_{end}": _average(of, end) for of in AVERAGED for end in AVERAGES}
+
 #: Variables with one value per contact: the dimension `contact` stands before `time`, if there are several.
 OF_CONTACTS = (
     "z", "friction", "direction", "y", "contact_amplitude", "friction_amplitude", "contact_amplitude_time",
@@ -144,7 +173,7 @@ TIMES = (
 )  # fmt: skip
 
 #: Variables with a counterpart in SI units, by measure.
-IN_SI = {
+IN_SI: dict[str, tuple[str, ...]] = {
     "length": (
         "x", "z", "y", "amplitude", "contact_amplitude", "x_max", "x_min", "z_max", "z_min", "residual",
         "contact_residual", "sliding_distance", "largest_slide",
@@ -158,9 +187,17 @@ IN_SI = {
     "work": ("work_load", "work_friction", "work_damping", "work_walls", "energy"),
 }  # fmt: skip
 
+_SQUARED = "squared "
+for _of, _measure in AVERAGED.items():
+    IN_SI[_measure] += tuple(f"{_of}_{end}" for end in ("mean", "mean_error", "peak", "peak_error"))
+    _square = _SQUARED + _measure
+    IN_SI[_square] = (*IN_SI.get(_square, ()), f"{_of}_variance", f"{_of}_variance_error")
+
 _SI_UNITS = {
     "length": ("m", "m"), "velocity": ("m s-1", "m_s"), "acceleration": ("m s-2", "m_s2"),
     "force": ("N", "N"), "work": ("J", "J"),
+    f"{_SQUARED}length": ("m2", "m2"), f"{_SQUARED}velocity": ("m2 s-2", "m2_s2"),
+    f"{_SQUARED}acceleration": ("m2 s-4", "m2_s4"), f"{_SQUARED}force": ("N2", "N2"),
 }  # fmt: skip
 
 
@@ -179,7 +216,9 @@ def si_name(name: str, measure: str) -> str:
 def _si_label(name: str, measure: str) -> Label:
     label = MOTIONS[name]
     return label._replace(
-        long_name=label.long_name.split(", over ")[0], comment="", units=_SI_UNITS[measure][0]
+        long_name=re.split(", (?:squared )?over ", label.long_name)[0],
+        comment="",
+        units=_SI_UNITS[measure][0],
     )
 
 

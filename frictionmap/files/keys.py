@@ -755,6 +755,19 @@ KEYS: dict[str, tuple[Key, ...]] = {
             "all",
             words='"all", "none", or a number of samples from one to the next',
         ),
+        Key(
+            "statistics",
+            "mean, variance and peak over the time of the record, with errors by batch means",
+            table(
+                {
+                    "start": either(number(least=0.0), with_unit("time")),
+                    "window": either(number(above=0.0), with_unit("time")),
+                    "batches": whole(least=4),
+                }
+            ),
+            example="{ start = 50.0 }",
+            words="{ start, window, batches }: time left out, length of windows of the peak, batches (20)",
+        ),
     ),
     "spectrum": (
         Key(

@@ -7,7 +7,15 @@ import numpy as np
 import xarray as xr
 
 from ..datasets.labels import attributes
-from ..datasets.motion_labels import CELL, NOT_COMPUTED, OF_CONTACTS, STATUSES, motion_labels, si_name
+from ..datasets.motion_labels import (
+    AVERAGED,
+    CELL,
+    NOT_COMPUTED,
+    OF_CONTACTS,
+    STATUSES,
+    motion_labels,
+    si_name,
+)
 from ..datasets.schema import checked_values
 from ..errors import InputError
 
@@ -145,9 +153,29 @@ def rows_of_motion(one: xr.Dataset) -> Iterator[tuple[str, str]]:
             yield words, _measured(one, name, measure, unit)
     if "beta_hold" in one and np.isfinite(one["beta_hold"].values).any():
         yield "nothing moves from friction", _measured(one, "beta_hold", "force", "N")
+    for name, words in (("x", "displacement"), ("acceleration", "absolute acceleration")):
+        if f"{name}_mean" in one:
+            yield from _averages(one, name, words)
     if np.isfinite(one["asleep_time"]):
         unit = "s" if one["asleep_time"].attrs.get("units") == "s" else ""
         yield "at rest permanently after", _listed(one["asleep_time"].values, unit)
+
+
+def _averages(one: xr.Dataset, name: str, words: str) -> Iterator[tuple[str, str]]:
+    """Mean, variance and peak of a quantity of every mass, with their errors."""
+    measure = AVERAGED[name]
+    for end, kind in (("mean", measure), ("variance", f"squared {measure}"), ("peak", measure)):
+        own, error = f"{name}_{end}", f"{name}_{end}_error"
+        if si_name(own, kind) in one:
+            own, error = si_name(own, kind), si_name(error, kind)
+        pairs = zip(np.atleast_1d(one[own].values), np.atleast_1d(one[error].values), strict=True)
+        values = ", ".join(f"{value:.4g} +- {wrong:.2g}" for value, wrong in pairs)
+        unit = str(one[own].attrs.get("units", "1"))
+        yield f"{end} of the {words}", f"{values} {'' if unit == '1' else unit}".rstrip()
+    likeness = float(one[f"{name}_batch_correlation"].max())
+    batches = int(str(one.attrs["statistics"]).split(" batches")[0].rsplit(" ", 1)[1])
+    if likeness > 2.0 / np.sqrt(batches):
+        yield "too short", f"means of neighbouring batches are alike ({likeness:.2f}): errors are too small"
 
 
 def table_of(ds: xr.Dataset) -> Any:

@@ -18,13 +18,14 @@ bed              the structure with all contacts held under no load: place of re
 structure        a system under channels as arrays for the kernels, and what is watched of it
 starts           states at the beginning: at rest, given, or where another motion ended
 cells            the motions of a grid of records, scales and friction, on several threads
+statistics       medians, quantiles, exceedance over records; means of stationary motions over time
+averages         statistics of stationary motions beside their histories
 dataset          `history`: motions in time as labelled variables
 bounds           how far motions with other friction, or under another record, can be
 choice           `least_median`: the friction with the least median of a peak over records
 lanes            oscillators with friction under one record, eight at a time
 elastic_spectra  spectra of one mass whose contact has a spring
 spectra          friction response spectra of one mass
-statistics       medians, quantiles, exceedance over records; means of stationary motions over time
 table            the table [record] of a configuration
 configuration    the tables [record], [history] and [spectrum] of a configuration
 ===============  ================================================================================

@@ -18,6 +18,7 @@ from ..jobs import Progress, Watch, run_counted
 from ..model.system import System
 from ..units.scales import Scales, Units
 from ..version import __version__
+from .averages import asked_averages, with_averages
 from .cells import Asked, Found, Motions
 from .channels import drive_of
 from .origins import record_attributes
@@ -100,6 +101,7 @@ def history(
     after: str | float = "rest",
     samples: str | int = "all",
     beta_hold: bool = True,
+    statistics: Mapping[str, Any] | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
     watch: Watch | None = None,
@@ -137,6 +139,11 @@ def history(
     beta_hold : bool
         Whether the friction from which nothing moves is found, too: a further motion of every record.  Else
         it is NaN.
+    statistics : mapping, optional
+        Under stationary loads: mean, variance and peak of every quantity, with errors by batch means, as
+        `stationary` finds them over the time of the record from the samples that are kept, or from all if
+        none are.  A table of `start`, the time that is left out, `window` of the peak and `batches`; times
+        are in seconds for records with units.
     threads : int, optional
         Number of threads; default: all processors.  The result is equal to the bit for any number.
     progress, watch : callable, optional
@@ -173,7 +180,9 @@ def history(
     )
     structure = structure_of(system)
     refuse_static(structure.system.contact_system, grid.mu)
-    asked = Asked(start_of(structure, start), _after(after), _every(samples, grid))
+    averages = asked_averages(statistics, grid.records[0].unit)
+    every = _every("all" if averages and samples == "none" else samples, grid)
+    asked = Asked(start_of(structure, start), _after(after), every)
     single = int(np.prod(grid.shape)) == 1
     if not isinstance(beta_hold, bool):
         raise InputError("beta_hold", f"must be true or false; got {checks.one_line(beta_hold)}")
@@ -186,6 +195,10 @@ def history(
         "excitation": excitation_of(system), "history": f"{now()} frictionmap.history",
         **record_attributes(structure.system, grid.records),
     }  # fmt: skip
+    if averages is not None:
+        factors = [scale_of(one, scales).time for one in grid.records]
+        ds = with_averages(ds, averages, grid.records, factors)
+        ds = ds.drop_dims("time") if samples == "none" else ds
     return in_si(ds, scales)
 
 
@@ -204,9 +217,10 @@ def in_si(ds: xr.Dataset, scales: Scales) -> xr.Dataset:
         if length is not None:
             ones["velocity"], ones["acceleration"] = omega * length, omega * omega * length
         ds = _in_seconds(ds, omega)
+    ones |= {f"squared {measure}": one * one for measure, one in ones.items()}
     added = {}
     for measure, one in ones.items():
-        for name in IN_SI[measure]:
+        for name in IN_SI.get(measure, ()):
             if name in ds.variables:
                 label = motion_labels()[si_name(name, measure)]
                 added[si_name(name, measure)] = (ds[name].dims, ds[name].values * one, attributes(label))

@@ -230,6 +230,7 @@ def test_static_friction_that_is_not_fitted_is_suggested():
 VISIBLE = ("random", "runup", "quake", "hammer", "static", "elastic", "delay", "noisybase")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", VISIBLE)
 def test_records_of_the_specification(reference_path, name):
     """Within four standard errors of the truth; standard errors near those of another estimator."""

@@ -1,5 +1,7 @@
 """Means, variances and peaks of stationary motions, with errors that hold."""
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -76,3 +78,48 @@ def test_straight_lines_are_integrated_exactly():
     assert float(found.variance) == pytest.approx(9.0 * 16.0 / 12.0 + float(found.mean_error) ** 2, rel=1e-13)
     with pytest.raises(fm.InputError, match="window must fit twice"):
         stationary(line, window=3.0)
+
+
+NOISE = fm.Record.generate("white", "60 s", "0.02 s", rms="2 m/s^2", unit="m/s^2", seed=3, count=2)
+SHAKEN = {
+    "system": fm.System(excitation="base", damping_reference="base", contact="joined-base-wall"),
+    "units": fm.Units(natural_frequency="1.5 Hz"), "after": 0.0,
+}  # fmt: skip
+AVERAGES = {"start": "10 s", "window": 2.5, "batches": 10}
+
+
+def test_statistics_of_histories_are_those_of_each_motion():
+    """In ratios and in SI units, with and without samples, of several motions and of one."""
+    friction = ["0.02 g", "0.05 g"]
+    both = fm.history(record=NOISE, beta=friction, statistics=AVERAGES, **SHAKEN)
+    less = fm.history(record=NOISE, beta=friction, statistics=AVERAGES, samples="none", **SHAKEN)
+    assert "time" not in less.dims
+    assert "x_max_m" in less
+    for of, si in (("x", "m"), ("v", "m_s"), ("acceleration", "m_s2"), ("z", "m")):
+        own = both[f"{of}_{si}"].isel(record=1, scale=0, mu=0, beta=1)
+        direct = stationary(own, start=10.0, window=2.5, batches=10)
+        squared = {"m": "m2", "m_s": "m2_s2", "m_s2": "m2_s4"}[si]
+        for end, unit in (("mean", si), ("mean_error", si), ("variance", squared), ("peak_error", si)):
+            for ds in (both, less):
+                found = ds[f"{of}_{end}_{unit}"].isel(record=1, scale=0, mu=0, beta=1)
+                np.testing.assert_allclose(found, direct[end], rtol=1e-9, atol=1e-15)
+        np.testing.assert_array_equal(less[f"{of}_batch_correlation"], both[f"{of}_batch_correlation"])
+    assert both.x_variance_m2.attrs["units"] == "m2"
+    one = fm.history(record=NOISE[1], beta="0.05 g", statistics=AVERAGES, **SHAKEN)
+    direct = stationary(one.friction.squeeze(drop=True), start=10.0, window=2.5, batches=10)
+    np.testing.assert_allclose(one.friction_variance.item(), direct.variance, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"begin": 3.0}, "unknown key 'statistics.begin'; valid: start, window, batches"),
+        ({"start": 61.0}, "statistics.start must be <= 60"),
+        ({"window": "40 s"}, "statistics.window must fit twice into the time after start; got 40"),
+        ({"batches": 3}, "statistics.batches must be >= 4; got 3"),
+        (True, "statistics must be a table of start, window, batches; got True"),
+    ],
+)
+def test_statistics_that_are_none_are_refused(given, said):
+    with pytest.raises(fm.InputError, match=re.escape(said)):
+        fm.history(record=NOISE[0], beta="0.05 g", statistics=given, **SHAKEN)

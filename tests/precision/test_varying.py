@@ -95,7 +95,11 @@ def test_any_number_of_threads_and_any_cut_give_the_same_bits(keys):
 
 
 @pytest.mark.parametrize(
-    "keys", [{"wall_speed": 0.4}, {"excitation": "base", "base_control": "acceleration"}]
+    "keys",
+    [
+        {"wall_speed": 0.4},
+        pytest.param({"excitation": "base", "base_control": "acceleration"}, marks=pytest.mark.slow),
+    ],
 )
 def test_every_question_and_motion_is_that_of_the_frequency(keys):
     system = fm.System(damping_ratios=0.05, **keys)

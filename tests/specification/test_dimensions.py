@@ -164,7 +164,8 @@ DIMENSIONLESS = {
     "design.response.mass", "design.response.contact",
     "record.pulse.rise", "record.mass", "record.vector[]", "record.scale", "record.scale[]",
     *(f"record.generate.{name}" for name in ("seed", "count", "damping", "filter_damping")),
-    "history.mu", "history.mu[]", "history.samples", "spectrum.mu", "spectrum.mu[]", "spectrum.damping",
+    "history.mu", "history.mu[]", "history.samples", "history.statistics.batches",
+    "spectrum.mu", "spectrum.mu[]", "spectrum.damping",
     "spectrum.contact_stiffness",
 }  # fmt: skip
 
@@ -174,7 +175,8 @@ OF_MOTIONS = {
     *(f"record.sweep.{name}" for name in ("from", "to", "duration", "amplitude")),
     *(f"record.generate.{name}" for name in (
         "duration", "dt", "rms", "peak", "frequency", "filter_frequency", "wind_speed")),
-    "record.peak", "history.beta", "history.friction", "spectrum.period", "spectrum.friction",
+    "record.peak", "history.beta", "history.friction", "history.statistics.start",
+    "history.statistics.window", "spectrum.period", "spectrum.friction",
     "spectrum.beta",
 }  # fmt: skip
 
@@ -232,7 +234,7 @@ def test_every_number_is_in_the_table_or_has_no_dimension():
         own = re.sub(r"(\[\]|\.(start|stop|step|num|values))+$", "", name)
         if own in ENTRIES | OF_RECORD or name.endswith(".num") or "dofs" in name:
             continue
-        own = name if name in DIMENSIONLESS else own
+        own = name if name in DIMENSIONLESS | OF_MOTIONS else own  # a time to start at is no end of a range
         assert (own in dimensional) != (own in DIMENSIONLESS), name
         assert unit == (own in dimensional), name
 

@@ -86,6 +86,23 @@ def test_one_motion_with_its_history(tmp_path):
     assert main(["history", "frame.toml", "--quiet", "-o", "on.nc", *goes_on]) == 0
 
 
+def test_statistics_are_in_the_file_and_printed(tmp_path, capsys):
+    shaken = FRAME.replace("pulse = { kind = \"half-sine\", amplitude = 1.0, duration = 3.0 }",
+        "generate = { kind = \"white\", rms = 1.0, duration = 300.0, dt = 0.1 }")  # fmt: skip
+    (tmp_path / "frame.toml").write_text(shaken)
+    choice = ["--set", "history.beta=0.2", "--set", "history.samples=none"]
+    assert main(["history", "frame.toml", *choice, "--set", "history.statistics={ start = 50.0 }"]) == 0
+    ds = fm.open("frame-history.nc")
+    assert "time" not in ds.dims
+    values = zip(ds.x_variance.values.ravel(), ds.x_variance_error.values.ravel(), strict=True)
+    words = ", ".join(f"{value:.4g} +- {error:.2g}" for value, error in values)
+    for said in (capsys.readouterr().out, ds.frictionmap.summary()):
+        assert f"variance of the displacement       {words}" in str(said)
+    again = [*choice, "--overwrite", "--set", "history.statistics={ window = 200.0 }"]
+    assert main(["history", "frame.toml", *again]) == 2
+    assert "history.statistics.window must fit twice" in capsys.readouterr().err
+
+
 def test_spectra_of_a_suite():
     few = ["--set", "spectrum.period.num=5"]
     assert main(["spectrum", str(MOTIONS / "spectra.toml"), *FEW, *few]) == 0

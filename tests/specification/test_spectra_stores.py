@@ -171,6 +171,7 @@ def test_a_store_of_maps_is_no_store_of_spectra(tmp_path, monkeypatch, capsys):
     assert "cannot resume m.zarr: it holds a map" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [None, 2])
 def test_killed_spectra_go_on_to_the_same_bits(tmp_path, workers):
     """Killed as soon as a block is done; the blocks that were done are not done again."""

@@ -206,12 +206,6 @@ class Contact(Shown):
             raise InputError("normal_record", f"must be a frictionmap.Record; got {got}")
         if self.normal_load is not None:
             raise InputError("cannot use", "normal_record", "with normal_load: both define it; omit one")
-        if self.stiffness is not None:
-            raise InputError(
-                "cannot use",
-                "normal_record",
-                "with stiffness: under records elastic contacts have a constant normal load; omit one",
-            )
 
     def _check_normal_load(self) -> None:
         least = least_value(self.nu)

@@ -20,6 +20,7 @@ starts           states at the beginning: at rest, given, or where another motio
 cells            the motions of a grid of records, scales and friction, on several threads
 statistics       medians, quantiles, exceedance over records; means of stationary motions over time
 averages         statistics of stationary motions beside their histories
+holding          the largest forces in contacts that all hold: the friction from which nothing moves
 dataset          `history`: motions in time as labelled variables
 bounds           how far motions with other friction, or under another record, can be
 choice           `least_median`: the friction with the least median of a peak over records

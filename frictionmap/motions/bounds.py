@@ -63,8 +63,8 @@ def friction_bounds(system: System, ds: xr.Dataset, step: float, *, units: Units
     -------
     xarray.Dataset
         `amplitude` and `contact_amplitude`, over P/k_1: no displacement of a mass and no motion in a contact
-        differs by more at any time.  NaN for mu > 1, under varying normal loads, and for motions without a
-        known end.
+        differs by more at any time.  NaN for mu > 1, under varying normal loads, for friction over speed, and
+        for motions without a known end.
     """
     structure = structure_of(system)
     general = structure.system.contact_system
@@ -79,6 +79,7 @@ def friction_bounds(system: System, ds: xr.Dataset, step: float, *, units: Units
         straight = step * (ratios * norms * times).sum("contact", skipna=False)
         root = root.where(root <= straight, straight)
     plain = all(one.normal_record is None for group in general.groups for one in group.members)
+    plain = plain and not general.has_law
     equal = [plain and general.has_equal_friction(float(mu)) for mu in ds["mu"].values]
     known = (ds["status"] == 0) & xr.DataArray(equal, dims="mu")
     return _displacements(structure, root.where(known))
@@ -106,8 +107,8 @@ def record_bounds(system: System, one: Record, other: Record, *, units: Units | 
     -------
     xarray.Dataset
         `amplitude` and `contact_amplitude`, over P/k_1: no displacement of a mass and no motion in a contact
-        differs by more at any time.  NaN where the place or the velocity of the base acts, too: of such a
-        difference there is no bound without the friction.
+        differs by more at any time.  NaN where friction falls with the speed, and where the place or the
+        velocity of the base acts, too: of such a difference there is no bound without the friction.
 
     Raises
     ------
@@ -123,7 +124,9 @@ def record_bounds(system: System, one: Record, other: Record, *, units: Units | 
     0.0115
     """
     structure = structure_of(system)
-    if not structure.system.contact_system.has_equal_friction(1.0):
+    general = structure.system.contact_system
+    falls = any(min(group.first.law.slopes) < 0.0 for group in general.groups if group.first.law)
+    if falls or not general.has_equal_friction(1.0):
         return _displacements(structure, np.nan)
     scales = motion_scales(units, system)
     drives = [drive_of(structure.system, record, scale_of(record, scales)) for record in (one, other)]

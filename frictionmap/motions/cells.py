@@ -4,10 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .._kernels.general.problem import Problem
 from .._kernels.general.record import make_record
 from .._kernels.general.series import Friction
 from .._kernels.history.kept import Kept, make_kept
 from .._kernels.history.motion import CREEPING, Course, follow_record, make_memory
+from ..general.problem import fastest
 from .bed import held
 from .channels import Drive
 from .starts import Start
@@ -24,16 +26,6 @@ _MOST_LENGTHS = 64
 
 #: Rounding error of a sum, relative to its terms.
 _ROUNDING = 2.0**-50
-
-#: Longest periods of the held structure after a record in which its largest force is looked for: undamped
-#: modes of several frequencies come nearer and nearer to their bound without an end.
-_MOST_PERIODS = 100.0
-
-#: A bound within this share of a force is that force with rounding error.
-_SAME = 1e-12
-
-#: Friction that nothing overcomes.
-HOLDS = 1e150
 
 
 class Asked(NamedTuple):
@@ -117,25 +109,36 @@ class Motions:
         lengths = len(np.unique(steps))
         lengths = lengths if lengths <= _MOST_LENGTHS else 0
         course = Course(np.ascontiguousarray(terms), steps, self.drive.times, self.drive.jumps)
+        problem = self._at(kinetic)
         while True:
-            masses = np.empty((0, self.problem.squares.size))
-            record = make_record(self.problem, masses, 0)
-            kept = make_kept(self.problem, weights, rounding, record, room)
-            one = self.problem._replace(rates=np.ones(1))  # room for the channels of one interval
+            masses = np.empty((0, problem.squares.size))
+            record = make_record(problem, masses, 0)
+            kept = make_kept(problem, weights, rounding, record, room)
+            one = problem._replace(rates=np.ones(1))  # room for the channels of one interval
             memory = make_memory(one, weights.shape[0], terms.shape[2], lengths)
             status, done, asleep = follow_record(
-                self.problem, friction, memory, course, start, asked.start.sense, kept, bed, limits
+                problem, friction, memory, course, start, asked.start.sense, kept, bed, limits
             )
             if (kept.counts <= room).all():
                 break
             room = np.maximum(room, kept.counts)
         motion = memory.motion
-        state = motion.state[:2, : self.problem.squares.size]
+        state = motion.state[:2, : problem.squares.size]
         end, slept = (self._time(k, steps) for k in (done, asleep))
         found = Found(
             int(status), kept, memory.counts, state, motion.sense, end, slept if asleep >= 0 else np.nan, None
         )
         return found._replace(place=self._place(found))
+
+    def _at(self, kinetic: np.ndarray) -> Problem:
+        """The problem under this friction, which is damping where it depends on the speed."""
+        law = self.problem.law
+        if not law.slope.size:
+            return self.problem
+        structure = self.structure
+        damping = np.abs(law.slope).max(axis=1) * kinetic
+        rate = fastest(structure.modal, structure.spring, damping)
+        return self.problem._replace(rates=np.array([rate]))
 
     def _rounding(self, static: np.ndarray, scale: float) -> np.ndarray:
         """Rounding errors of the watched quantities, from the sizes of what they are sums of."""
@@ -152,7 +155,7 @@ class Motions:
         last = steps.size - 1
         return float(self.drive.times[min(intervals, last)] + max(0, intervals - last) * steps[-1])
 
-    def _state(self, one: Found) -> np.ndarray:
+    def state_at_end(self, one: Found) -> np.ndarray:
         """q, q' and forces of springs at the end."""
         springs = np.where(self.structure.spring > 0.0, one.kept.forces, 0.0)
         return np.concatenate((one.state[0], one.state[1], springs))
@@ -160,7 +163,7 @@ class Motions:
     def _place(self, one: Found) -> np.ndarray | None:
         """Where the masses come to rest."""
         if one.asleep == one.asleep and self.held.restored:
-            return self.held.rest @ self._state(one)
+            return self.held.rest @ self.state_at_end(one)
         return one.state[0] if one.status == CREEPING else None
 
     def contact_places(self, one: Found) -> np.ndarray:
@@ -169,27 +172,3 @@ class Motions:
         moving = self.problem.base @ self.drive.terms[-1, :, 1] != 0.0
         places = self.problem.chi @ one.place - self.problem.base @ self.drive.terms[-1, :, 0]
         return np.where(moving, np.nan, places)
-
-    def hold(self, asked: Asked) -> np.ndarray:
-        """Largest force in every contact with all contacts held, (N,).
-
-        After the record the free vibration is followed until its energy bounds all later forces.
-        """
-        friction = np.full(self.structure.spring.size, HOLDS)
-        rows = self.watched.places["friction"]
-        period = 2.0 * np.pi / self.held.slowest
-        after = asked.after
-        if after is None:
-            after = period if self.held.bed.active[0] else 0.0
-        while True:
-            found = self.follow(friction, friction, 1.0, asked._replace(after=after, every=0), False, rows)
-            forces = np.abs(found.kept.peaks[:2]).max(axis=0)
-            done = asked.after is not None or not 0.0 < after < _MOST_PERIODS * period
-            if done or (self._bound(found) <= forces * (1.0 + _SAME)).all():
-                return forces
-            after *= 2.0
-
-    def _bound(self, one: Found) -> np.ndarray:
-        """Bound on the forces in contacts that stay held, without load, from the energy at the end, (N,)."""
-        bed, state = self.held.bed, self._state(one)
-        return np.abs(bed.forces @ state) + np.linalg.norm(bed.vibration @ state) * bed.gains

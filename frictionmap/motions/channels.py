@@ -110,6 +110,13 @@ def _normal_loads(general: ContactSystem, time: float) -> list[Channel]:
                     f"must leave 1 + its value >= 0, as contacts that separate are another model; "
                     f"got {least:.3g} at its least",
                 )
+            open_ = (pieces.terms == np.eye(1, pieces.terms.shape[1])[0] * -1.0).all(axis=1)
+            if group.stiffness is not None and open_.any():
+                raise InputError(
+                    f"contacts[{j + 1}].normal_record",
+                    f"must leave 1 + its value > 0 with stiffness but for single instants, as a spring in a "
+                    f"contact without load has no force; got 0 from {record.times[np.argmax(open_)]:g} on",
+                )
             n = group.vector.size
             found.append(Channel(pieces, np.zeros(n), np.zeros(general.count), np.eye(general.count)[j]))
     return found

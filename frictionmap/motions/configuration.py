@@ -221,6 +221,13 @@ def _system_values(tree: Mapping[str, Any], path: Path, given: Mapping[str, Any]
             f"cannot compute spectra of {system.n} masses and {system.contact_system.count} contacts: a "
             "spectrum is of one mass with one contact; use frictionmap history"
         )
+    contact = system.contact_system.groups[0].first
+    for key, value in (("law", contact.law), ("wall_speed", contact.belt), ("normal_load", contact.nu)):
+        if value:
+            raise InputError(
+                f"cannot compute spectra of a contact with {key}: they are of constant friction at a wall at "
+                "rest; use frictionmap history, or omit it"
+            )
     ratios: Any = system.damping_ratios
     found: dict[str, Any] = {"damping": ratios[0]}
     stiffness = system.contact_system.groups[0].stiffness

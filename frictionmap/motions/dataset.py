@@ -21,6 +21,7 @@ from ..version import __version__
 from .averages import asked_averages, with_averages
 from .cells import Asked, Found, Motions
 from .channels import drive_of
+from .holding import largest_forces
 from .origins import record_attributes
 from .record import Record, checked_records
 from .scaling import friction_ratios, motion_scales, scale_of
@@ -271,7 +272,7 @@ def _follow(
 
     def hold_task(i: int) -> Callable[[], None]:
         def run() -> None:
-            hold[i] = motions[i].hold(each[i])
+            hold[i] = largest_forces(motions[i], each[i])
 
         return run
 

@@ -22,7 +22,7 @@ from .._kernels.history.spectrum_lanes import (
     X,
 )
 from ..errors import InputError
-from .cells import HOLDS
+from .holding import HOLDS
 from .pieces import SAME, Pieces, shifted
 from .record import Record
 

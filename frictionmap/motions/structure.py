@@ -6,8 +6,8 @@ import numpy as np
 
 from .._kernels.general.problem import Problem
 from ..errors import InputError
-from ..general.problem import ModalSystem, fastest, modal_system, refuse_loop, springs, ties
-from ..model.general import in_general_form, refuse_law, refuse_modes, refuse_phases
+from ..general.problem import ModalSystem, fastest, law_of, modal_system, refuse_loop, springs, ties
+from ..model.general import in_general_form, refuse_modes, refuse_phases
 from ..model.system import System
 from .channels import Drive
 
@@ -30,7 +30,6 @@ class Watched(NamedTuple):
 
 def structure_of(system: System) -> Structure:
     """Modes of a system in the form that the general engine takes."""
-    refuse_law(system, "compute motions under records")
     refuse_phases(system, "compute motions under records")
     refuse_modes(system, "compute motions under records")
     system = in_general_form(system)
@@ -55,14 +54,17 @@ def problem_of(structure: Structure, drive: Drive) -> Problem:
     moved = np.array([float(group.base) for group in general.groups])
     # at r = 1 both are over omega_1 P/k_1
     belt = np.array([group.first.wall_velocity + group.first.wall_speed for group in general.groups])
+    tied = ties(general.vectors, moved, belt, structure.spring)
+    # a slider under a varying normal load slips between ends at rest, too: it is watched there
+    tied[drive.normal.any(axis=1)] = False
     size = float((np.abs(push) @ largest / (modal.squares + 1.0)).max())
     return Problem(
         modal.squares, modal.damping, bool((modal.damping != np.diag(np.diag(modal.damping))).any()),
         np.ascontiguousarray(modal.chi), push, np.ascontiguousarray(drive.base),
         np.ascontiguousarray(drive.normal), structure.spring, belt,
-        ties(general.vectors, moved, belt, structure.spring), np.empty(0), np.ones(1),
+        tied, np.empty(0), np.ones(1),
         np.empty((1, 2, drive.push.shape[1], 0)), np.array([structure.rate]),
-        np.array([size if size > 0.0 else 1.0]), False,
+        np.array([size if size > 0.0 else 1.0]), False, law_of(general),
     )  # fmt: skip
 
 

@@ -259,5 +259,3 @@ def test_motions_in_time_refuse_it():
     pulse = fm.Record([0.0, 1.0, 0.0], dt=1.0, quantity="force")
     with pytest.raises(fm.InputError, match="cannot use normal_load in a motion in time"):
         fm.history(fm.System(contact_stiffness=1.0, normal_load={1: 0.5}), pulse, beta=[0.2])
-    with pytest.raises(fm.InputError, match="cannot use normal_record with stiffness"):
-        fm.Contact(stiffness=1.0, normal_record=pulse)

@@ -28,6 +28,15 @@ beta = [0.2, 0.4]
 """
 
 
+SPECTRA = """
+[record]
+pulse = { kind = "half-sine", amplitude = 1.0, duration = 3.0 }
+[spectrum]
+period = [1.0]
+friction = [0.1]
+"""
+
+
 @pytest.fixture(autouse=True)
 def _here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -180,6 +189,21 @@ def test_the_first_remedy_is_the_last(tmp_path, capsys, given):
     (tmp_path / "wall.toml").write_text(f"[system]\n{contact}{given}{record}")
     assert main(["history", "wall.toml"]) == 2
     assert WALLS[given] in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("law", "{ speed = [0.0, 0.5], factor = [1.0, 0.7] }"),
+        ("wall_speed", "0.3"),
+        ("normal_load", "[{ n = 1, re = 0.5 }]"),
+    ],
+)
+def test_spectra_do_not_leave_out_what_the_contact_has(tmp_path, capsys, key, value):
+    text = f"[system]\n[[system.contacts]]\n{key} = {value}\n" + SPECTRA
+    (tmp_path / "one.toml").write_text(text)
+    assert main(["spectrum", "one.toml"]) == 2
+    assert f"cannot compute spectra of a contact with {key}" in capsys.readouterr().err
 
 
 def test_what_a_motion_is_under_is_refused_by_steady_states():

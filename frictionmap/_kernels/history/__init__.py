@@ -6,6 +6,7 @@ The structure, its contacts, the series of a step and the events are those of `g
 module           what is in it
 ===============  ====================================================================
 kept             peaks, works, slides, events and samples of a motion in time
+springs          springs under varying normal loads, where an interval begins
 tables           intervals in which nothing happens, by sums
 held             what is held stays where it is
 asleep           when a motion under no load has ended for all contacts

@@ -13,6 +13,7 @@ from ..general.follow import count_time, pass_event, prepare
 from ..general.laws.coulomb import first_event, reaches, watched_slope
 from ..general.laws.elastic import rest_springs
 from ..general.laws.kinds import has_constraint
+from ..general.laws.speed import first_bound, has_law, is_at_speed, set_segments
 from ..general.pattern import BOX_ROWS, PARTICIPATES, settle, stop_exactly
 from ..general.problem import (
     HALF,
@@ -36,6 +37,7 @@ from ..general.series import advance, expand, factor_held
 from .asleep import is_asleep
 from .held import Places, keep_places, make_places, note_places
 from .kept import begin_step, keep_ends, keep_present, keep_step, list_changes, store_state
+from .springs import begin_springs, has_varying_spring
 from .tables import Tables, has_tables, make_tables, pass_by_tables, set_tables
 
 #: What became of a motion.
@@ -118,7 +120,7 @@ def _touches(problem, friction, motion, event, end):
 
 
 @kernel
-def _next_event(problem, friction, motion, end):
+def _next_event(problem, row, friction, motion, end):
     """Return (x, contact, side) of the first event up to `end`; x = NONE without one.
 
     A limit that a force touches is no event: at a sample the slope of the load after it decides, and a
@@ -127,8 +129,11 @@ def _next_event(problem, friction, motion, end):
     found, contact, side = NONE, -1, 0
     for j in range(motion.sense.size):
         x, of = first_event(problem, friction, motion, j)
+        if motion.sense[j] != 0 and has_law(problem):
+            x, of = first_bound(problem, row, motion, j, x, of)
         if x < found and x <= end:
-            if of != 0 and motion.fresh[j] == 0 and _touches(problem, friction, motion, (x, j, of), end):
+            held = motion.sense[j] == 0
+            if held and motion.fresh[j] == 0 and _touches(problem, friction, motion, (x, j, of), end):
                 of = -of
                 x = reaches(problem, friction, motion, j, of)
                 if x >= found or x > end or _touches(problem, friction, motion, (x, j, of), end):
@@ -159,7 +164,7 @@ def _cross(problem, friction, memory, kept, jumped, listed):
     Parameters
     ----------
     problem, friction, memory, kept : see `follow_record`; the polynomials are in `row.loads`
-    jumped : whether the load has jumped at the beginning
+    jumped : whether the load, or what a contact does, has changed at the beginning
     listed : whether the states at events are kept
 
     Returns
@@ -171,13 +176,14 @@ def _cross(problem, friction, memory, kept, jumped, listed):
     x = 0.0
     motion.clock[0] = math.nan
     before = motion.scratch[_SENSE]
-    for k in range(_MOST_EVENTS):
+    show = listed and jumped
+    for _ in range(_MOST_EVENTS):
         rest = 1.0 - x
         expand(problem, row, friction, x * h, 0 if x == 0.0 else -1, motion, True)
         _skip_zeros(problem, motion)
-        if listed and (k > 0 or jumped):
+        if show:
             keep_present(problem, row, motion, x, 0.0, kept)
-        event = _next_event(problem, friction, motion, rest)
+        event = _next_event(problem, row, friction, motion, rest)
         step = min(event[0], rest)
         if step > 0.0:
             begin_step(problem, row, motion, kept)
@@ -190,7 +196,8 @@ def _cross(problem, friction, memory, kept, jumped, listed):
         if event[1] < 0:
             keep_ends(problem, motion, step, kept)
             return RESOLVED
-        if listed:
+        show = listed and not is_at_speed(event[2])
+        if show:
             keep_present(problem, row, motion, x + step, step, kept)
         for j in range(motion.sense.size):
             before[j] = motion.sense[j]
@@ -259,6 +266,7 @@ def _settle(problem, friction, memory):
     for j in range(motion.sense.size):
         if box[PARTICIPATES, j] != 0.0 and motion.sense[j] != 0:
             motion.fresh[j] = 1
+            motion.segment[j] = 0
     rest_springs(problem, friction, motion, 1)
     return factor_held(problem, row, motion)
 
@@ -303,6 +311,7 @@ def _begin(problem, friction, memory, course, start, senses):
         motion.state[F, j] = start[F, j]
         by_law = senses[j] == BY_LAW
         motion.sense[j] = _sense_at_start(problem, row, motion, j) if by_law else senses[j]
+    set_segments(problem, row, motion)
     if not prepare(problem, row, friction, motion):
         return False
     if senses[0] == BY_LAW and not _settle(problem, friction, memory):
@@ -343,14 +352,17 @@ def _follow_interval(problem, friction, memory, course, kept, k, jump, listed):
         kept.clock[0] = begin + step * (part / parts)
         _put_pieces(memory.row, course.pieces[k], part, parts)
         jumped = jump and part == 0
+        row, motion, counts = memory.row, memory.motion, memory.counts
+        changed = jumped
+        if part == 0 and has_varying_spring(problem):
+            changed |= begin_springs(problem, row, friction, motion, kept, motion.scratch[_SENSE])
         if jumped and not _jump(problem, friction, memory, kept):
             return UNDETERMINED
         by_tables = not jumped and tables.known.size > 0
-        row, motion, counts = memory.row, memory.motion, memory.counts
         if by_tables and pass_by_tables(problem, row, friction, motion, counts, kept, tables):
             keep_places(problem, row, motion, 1.0, kept.clock[0] + row.numbers[H], memory.places)
             continue
-        code = _cross(problem, friction, memory, kept, jumped, listed)
+        code = _cross(problem, friction, memory, kept, changed, listed)
         if code != RESOLVED:
             return code
     return RESOLVED
@@ -434,6 +446,7 @@ def follow_record(problem, friction, memory, course, start, senses, kept, bed, l
     if not _begin(problem, friction, memory, course, start, senses):
         return UNDETERMINED, 0, -1
     for j in range(motion.sense.size):
+        kept.forces[j] = motion.state[F, j]
         if motion.sense[j] != 0:
             kept.first[0] = course.times[0]
     if limits[EVERY] > 0:

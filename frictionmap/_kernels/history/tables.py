@@ -31,6 +31,7 @@ from ..general.crossings import slope_at, value_at
 from ..general.glide import begin_with
 from ..general.laws.contact import has_tables as has_tables_of
 from ..general.laws.kinds import has_force, state_size
+from ..general.laws.speed import has_law
 from ..general.problem import (
     LOAD_TERMS,
     LONG,
@@ -134,8 +135,8 @@ def make_tables(problem, watched, terms, lengths):
 
 @kernel
 def has_tables(problem):
-    """Whether tables hold for a system: no belts behind springs, constant normal loads."""
-    possible = True
+    """Whether tables hold: no belts behind springs, constant normal loads, no friction over speed."""
+    possible = not has_law(problem)
     for j in range(problem.spring.size):
         possible = possible and has_tables_of(problem, j) and not varies(problem, j)
     return possible

@@ -1,0 +1,123 @@
+"""Springs of contacts under varying normal loads, where an interval of a record begins.
+
+There the normal load may jump, and its slope.  A slider has no mass: where the limit falls below the force of
+its spring it slips at once until the force is at the limit, and the spring does this work.  Where the limit
+rises from the force of a slider that slips, or rises faster than the force, the slider stops.
+"""
+
+import math
+
+from ..compiler import kernel
+from ..general.laws.kinds import has_force
+from ..general.problem import LOAD_TERMS, F, slide_velocity, varies
+from ..general.record import OF_FRICTION
+from ..general.row import set_channels
+from .kept import LARGEST, PRESENT, list_changes
+
+#: Share of the terms of a normal load that is rounding error of their sum.
+_SAME = 1e-13
+
+#: A speed of a slider within this share of its terms is rest.
+_AT_REST = 1e-12
+
+
+@kernel
+def has_varying_spring(problem):
+    """Whether the normal load of a contact with a spring varies."""
+    found = False
+    for j in range(problem.spring.size):
+        found = found or (has_force(problem, j) and varies(problem, j))
+    return found
+
+
+@kernel
+def _limit(problem, row, friction, j):
+    """(limit, its slope, rounding error of the limit) of a contact where the interval begins."""
+    nu, rate, size = 1.0, 0.0, 1.0
+    for d in range(problem.normal.shape[1]):
+        share = problem.normal[j, d]
+        if share != 0.0:
+            nu += share * row.loads[d, 0]
+            rate += share * row.loads[d, 1]
+            for k in range(row.intervals[LOAD_TERMS]):
+                size += abs(share * row.loads[d, k])
+    kinetic = friction.kinetic[j]
+    return kinetic * max(nu, 0.0), kinetic * rate, _SAME * kinetic * size
+
+
+@kernel
+def _jump(problem, row, friction, motion, kept):
+    """Let sliders stop whose limits rise, and others begin to slip whose limits fall below their forces."""
+    for j in range(motion.sense.size):
+        if not (has_force(problem, j) and varies(problem, j)):
+            continue
+        limit, _, error = _limit(problem, row, friction, j)
+        if motion.sense[j] != 0:
+            motion.state[F, j] = kept.forces[j]
+        force = motion.state[F, j]
+        if abs(force) > limit + error:
+            motion.sense[j] = 1 if force > 0.0 else -1
+            motion.fresh[j] = 0
+        elif abs(force) < limit - error:
+            motion.sense[j] = 0
+
+
+@kernel
+def _slip_at_once(problem, row, friction, motion, kept):
+    """Let sliders slip until their forces are at their limits."""
+    for j in range(motion.sense.size):
+        if motion.sense[j] == 0 or not (has_force(problem, j) and varies(problem, j)):
+            continue
+        limit, _, _ = _limit(problem, row, friction, j)
+        force = abs(motion.state[F, j])
+        way = max(0.0, force - limit) / problem.spring[j]
+        kept.record.distance[j] += way
+        kept.record.works[OF_FRICTION, j] += 0.5 * (force + limit) * way
+        kept.slides[PRESENT, j] += way
+        kept.slides[LARGEST, j] = max(kept.slides[LARGEST, j], kept.slides[PRESENT, j])
+        motion.state[F, j] = motion.sense[j] * limit
+
+
+@kernel
+def _bend(problem, row, friction, motion):
+    """Stop sliders whose limits rise faster than their forces, or turn them at a limit of 0."""
+    for j in range(motion.sense.size):
+        if not (has_force(problem, j) and varies(problem, j)):
+            continue
+        limit, rate, error = _limit(problem, row, friction, j)
+        w, lag = slide_velocity(problem, row, motion, j), rate / problem.spring[j]
+        if limit <= error:  # no force, and the velocity alone decides
+            motion.state[F, j] = 0.0
+            motion.fresh[j] = 0
+            motion.sense[j] = (1 if w > 0.0 else -1) if abs(w) > lag else 0
+        elif motion.sense[j] != 0 and motion.sense[j] * w - lag < -_AT_REST * (abs(w) + abs(lag)):
+            motion.fresh[j] = motion.sense[j]
+            motion.sense[j] = 0
+
+
+@kernel
+def begin_springs(problem, row, friction, motion, kept, before):
+    """Decide what springs under varying normal loads do where an interval begins.
+
+    Parameters
+    ----------
+    problem, row, friction, motion, kept : see `motion.follow_record`; the polynomials are in `row.loads`
+    before : (N,) scratch
+
+    Returns
+    -------
+    bool : whether a slider stopped, or began to slip
+    """
+    motion.clock[0] = math.nan
+    set_channels(problem, row, 0.0, 0, motion)
+    listed = kept.counts[0]
+    for part in range(2):
+        for j in range(motion.sense.size):
+            before[j] = motion.sense[j]
+        if part == 0:
+            _jump(problem, row, friction, motion, kept)
+        else:
+            _slip_at_once(problem, row, friction, motion, kept)
+            _bend(problem, row, friction, motion)
+        list_changes(row, motion, before, 0.0, kept)
+    return kept.counts[0] > listed

@@ -64,7 +64,7 @@ def problem_of(structure: Structure, drive: Drive) -> Problem:
         np.ascontiguousarray(drive.normal), structure.spring, belt,
         tied, np.empty(0), np.ones(1),
         np.empty((1, 2, drive.push.shape[1], 0)), np.array([structure.rate]),
-        np.array([size if size > 0.0 else 1.0]), False, law_of(general),
+        np.array([size if size > 0.0 else 1.0]), False, law_of(structure.system, modal),
     )  # fmt: skip
 
 

@@ -114,7 +114,7 @@ def _normal_loads(general: ContactSystem, time: float) -> list[Channel]:
             if group.stiffness is not None and open_.any():
                 raise InputError(
                     f"contacts[{j + 1}].normal_record",
-                    f"must leave 1 + its value > 0 with stiffness but for single instants, as a spring in a "
+                    f"must leave 1 + its value > 0 with stiffness except for single instants, as a spring in a "
                     f"contact without load has no force; got 0 from {record.times[np.argmax(open_)]:g} on",
                 )
             n = group.vector.size

@@ -17,6 +17,7 @@ from ..errors import InputError
 from ..files.motions import rows_of_motion
 from ..motions.channels import drive_of
 from ..motions.configuration import Motions
+from ..motions.formulas import PULSES
 from ..motions.record import Record
 from ..motions.scaling import friction_ratio, friction_ratios, motion_scales, scale_of
 from ..units.axes import has_units
@@ -30,6 +31,9 @@ if TYPE_CHECKING:
 
 #: Keys of a query.
 KEYS = ("record", "beta", "mu", "scale")
+
+#: Keys of a pulse.
+PULSE_KEYS = ("kind", "amplitude", "duration")
 
 #: Parts of the time of a motion of which the extremes are drawn: about as many as pixels of a wide chart.
 _PARTS = 700
@@ -75,7 +79,8 @@ def _values(motions: Motions, name: str) -> np.ndarray:
     """Values of an argument of the configuration: of friction as ratios."""
     given = motions.arguments.get(name, 1.0)
     if name == "beta":
-        return friction_ratios(given, "history.friction", motion_scales(motions.units, motions.system))
+        name = f"history.{motions.friction}" if motions.text else motions.friction
+        return friction_ratios(given, name, motion_scales(motions.units, motions.system))
     least = 1.0 if name == "mu" else -np.inf
     found = checks.axis(given, name, least=least)
     return np.atleast_1d(found)
@@ -122,6 +127,7 @@ def describe(motions: Motions) -> dict[str, Any]:
         "version": __version__,
         "system": motions.system.describe(),
         "records": [{"key": str(k), "label": name} for k, name in enumerate(names, 1)],
+        "pulses": PULSES,
         "sliders": [slider._asdict() for slider in sliders(motions)],
         "physical": _physical(motions),
         "view": begin._asdict(),
@@ -176,8 +182,6 @@ def with_file(motions: Motions, name: str, body: bytes) -> Motions:
     InputError
         It is no record, or does not go with the system; or there are too many.
     """
-    if len(motions.records) >= _MOST_RECORDS:
-        raise InputError(f"cannot add a record: the page has {_MOST_RECORDS} already; start it again")
     with tempfile.TemporaryDirectory(prefix="frictionmap-") as folder:
         path = Path(folder) / name
         path.write_bytes(body)
@@ -185,6 +189,44 @@ def with_file(motions: Motions, name: str, body: bytes) -> Motions:
             record = Record.read(path)
         except InputError as error:
             raise InputError(str(error).replace(str(path), name)) from None
+    return _with_record(motions, record)
+
+
+def with_pulse(motions: Motions, query: str) -> Motions:
+    """Add a pulse of the quantity of the first record, by the keys of a query.
+
+    Raises
+    ------
+    InputError
+        A key is unknown or missing, or a value invalid; or there are too many records.
+    """
+    given = read_keys(query, PULSE_KEYS)
+    kind, amplitude, duration = (needed(given, key).strip() for key in PULSE_KEYS)
+    quantity = motions.records[0].quantity
+    if quantity == "displacement":
+        quantity = "acceleration"  # a pulse of displacement would jump
+    _, _, unit = amplitude.partition(" ")
+    if not unit and isinstance(_typed(amplitude), str):
+        raise InputError("amplitude", f"must be a number, or one with its unit, as 0.4 g; got {amplitude!r}")
+    record = Record.pulse(
+        kind, _typed(amplitude), _typed(duration), quantity=quantity, unit=unit or None,
+        name=f"{kind} {amplitude}, {duration}",
+    )  # fmt: skip
+    return _with_record(motions, record)
+
+
+def _typed(text: str) -> float | str:
+    """A number that was typed, as text if it has a unit."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _with_record(motions: Motions, record: Record) -> Motions:
+    """Add a record that goes with the system."""
+    if len(motions.records) >= _MOST_RECORDS:
+        raise InputError(f"cannot add a record: the page has {_MOST_RECORDS} already; start it again")
     drive_of(motions.system, record, scale_of(record, motion_scales(motions.units, motions.system)))
     return replace(motions, records=(*motions.records, record))
 
@@ -192,7 +234,7 @@ def with_file(motions: Motions, name: str, body: bytes) -> Motions:
 def _followed(motions: Motions, asked: Asked, **options: Any) -> xr.Dataset:
     record: Record = motions.records[asked.record - 1]
     changed: dict[str, Any] = {"beta": [asked.beta], "mu": [asked.mu], "scale": [asked.scale]}
-    options |= {"samples": "all", "beta_hold": False, **changed}
+    options |= {"samples": "all", "beta_hold": False, "statistics": None, **changed}
     return motions.follow([record], **options).squeeze(list(CELL))
 
 

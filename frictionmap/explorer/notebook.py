@@ -2,15 +2,24 @@
 
 import html
 import threading
-from typing import SupportsFloat
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, SupportsFloat
 
 from numpy.typing import ArrayLike
 
+from ..errors import InputError
 from ..model.settings import Start
 from ..model.system import System
 from ..units.scales import Units
 from .scene import scene_of_system
 from .server import Server, begin, open_server
+
+if TYPE_CHECKING:
+    from ..motions.configuration import Motions
+    from ..motions.record import Record
+
+#: Ranges that a page of maps begins with.
+_R, _BETA = (0.0, 2.5), (0.0, 2.0)
 
 #: Height of the page in a notebook [pixels].
 _HEIGHT = 860
@@ -58,16 +67,17 @@ class Explorer:
 
 def explore(
     system: System,
-    r: ArrayLike = (0.0, 2.5),
-    beta: ArrayLike = (0.0, 2.0),
+    r: ArrayLike = _R,
+    beta: ArrayLike = _BETA,
     mu: SupportsFloat = 1.0,
     *,
     start: Start = "rest",
     units: Units | None = None,
-    title: str = "Regimes of motion",
+    title: str | None = None,
     port: int | None = None,
+    record: "Record | Sequence[Record] | None" = None,
 ) -> Explorer:
-    """Show an interactive map of a system in a browser or notebook.
+    """Show an interactive map of a system, or its motions in time under records, in a browser or notebook.
 
     The page is served from this process and ends with it: a script that shows one ends with a line such as
     ``input(page.url)``, or the page is gone before it is seen.
@@ -85,10 +95,13 @@ def explore(
     units : Units, optional
         Reference values in Hz and N: the page then has second axes in these units, and r and beta may
         have units as of `sweep`, such as ``("1 Hz", "10 Hz")``.
-    title : str
-        Title of the page.
+    title : str, optional
+        Title of the page; default: "Regimes of motion" or "Motions in time".
     port : int, optional
         Local port of the page; default 8712, or any free port.
+    record : Record or sequence of Record, optional
+        The page then shows motions in time under these records.  `beta` is the friction that it begins with,
+        as of `history`, default 1; r is not used.
 
     Returns
     -------
@@ -108,8 +121,28 @@ def explore(
     True
     >>> page.close()
     """
-    scene = scene_of_system(system, r, beta, mu, start, title, units)
+    if record is not None:
+        motions = _motions(system, record, beta, mu, units, title or "Motions in time")
+        for name, given, own in (("r", r, _R), ("start", start, "rest")):
+            if given is not own and given != own:
+                raise InputError("cannot use", name, "with record: it is of maps; omit it")
+        return Explorer(open_server(motions, _port(port)))
+    scene = scene_of_system(system, r, beta, mu, start, title or "Regimes of motion", units)
     return Explorer(open_server(scene, _port(port)))
+
+
+def _motions(system: System, record: Any, beta: Any, mu: Any, units: Units | None, title: str) -> "Motions":
+    """What a page of motions in time shows, checked."""
+    from .. import checks
+    from ..motions.configuration import Motions
+    from ..motions.record import checked_records
+    from .in_time import check
+
+    checks.instance(system, "system", System)
+    given = {"beta": 1.0 if beta is _BETA else beta, "mu": checks.number(mu, "mu", least=1.0)}
+    motions = Motions(title, "", "", (), system, units, checked_records(record, "record"), given, "beta")
+    check(motions)
+    return motions
 
 
 def _port(port: object) -> int | None:

@@ -2,8 +2,8 @@
 
 It listens on 127.0.0.1 and answers requests to that name only: a page of another host that has its name point
 here, and requests from pages of other hosts, are refused (403).  Queries are checked (400, one line), and
-no request changes anything but one: a page of motions in time takes files of records, which it reads in a
-temporary folder and keeps in memory.
+no request changes anything but two: a page of motions in time takes files of records, which it reads in a
+temporary folder and keeps in memory, and pulses.
 """
 
 import contextlib
@@ -353,15 +353,20 @@ class MotionPage(Page):
         self.shown.set()
         return _packet(found)
 
-    def receive(self, query: str, body: bytes) -> Answer:
-        """Add the record in a file."""
-        from .in_time import describe, named_file, with_file
+    #: Addresses that take a record: as a file, or as the numbers of a pulse.
+    taken = ("/record", "/pulse")
+
+    def receive(self, path: str, query: str, body: bytes) -> Answer:
+        """Add the record in a file, or a pulse."""
+        from .in_time import describe, named_file, with_file, with_pulse
 
         self._warm.wait()
         try:
-            name = named_file(query)
             with self._lock:
-                self.motions = with_file(self.motions, name, body)
+                if path == "/pulse":
+                    self.motions = with_pulse(self.motions, query)
+                else:
+                    self.motions = with_file(self.motions, named_file(query), body)
                 number = len(self.motions.records)
             return _json({"record": number, "records": describe(self.motions)["records"]})
         except InputError as error:
@@ -393,7 +398,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         page, target = self.server.page, urlsplit(self.path)
-        if target.path != "/record" or not isinstance(page, MotionPage):
+        if not isinstance(page, MotionPage) or target.path not in page.taken:
             self.send_error(HTTPStatus.NOT_IMPLEMENTED, "Unsupported method ('POST')")
             return
         refusal = self._refusal() or self._too_large()
@@ -403,7 +408,7 @@ class _Handler(BaseHTTPRequestHandler):
             return
         body = self.rfile.read(int(self.headers["Content-Length"]))
         try:
-            answer = page.receive(target.query, body)
+            answer = page.receive(target.path, target.query, body)
         except Exception as error:  # the page shows any error in one line
             answer = _text(500, f"frictionmap failed: {type(error).__name__}: {error}")
         self._reply(answer)

@@ -51,10 +51,10 @@ def asked_averages(given: Any, unit: str | None) -> Averages | None:
     )  # fmt: skip
 
 
-def with_averages(
+def averages_of(
     ds: xr.Dataset, asked: Averages, records: Sequence[Record], factors: Sequence[float]
-) -> xr.Dataset:
-    """Add the statistics of all motions, from `start` to the end of the record of each.
+) -> dict[str, xr.Variable]:
+    """The statistics of all motions, from `start` to the end of the record of each.
 
     ds : with histories, its time in 1/omega_1
     factors : what makes the times of the records dimensionless
@@ -74,8 +74,9 @@ def with_averages(
     for name, each in found.items():
         of = next(of for of in AVERAGED if name.startswith(f"{of}_"))
         dims = [dim for dim in ds[of].dims if dim != "time"]
-        added[name] = (dims, np.array(each).reshape(*shape, *each[0].shape), attributes(MOTIONS[name]))
-    return ds.assign(added).assign_attrs(statistics=_describe(asked))
+        values = np.array(each).reshape(*shape, *each[0].shape)
+        added[name] = xr.Variable(dims, values, attributes(MOTIONS[name]))
+    return added
 
 
 def _statistics_of(values: xr.DataArray, asked: Averages) -> dict[str, np.ndarray]:
@@ -87,6 +88,7 @@ def _statistics_of(values: xr.DataArray, asked: Averages) -> dict[str, np.ndarra
     return {end: found[end].values for end in AVERAGES}
 
 
-def _describe(asked: Averages) -> str:
+def describe_averages(asked: Averages) -> str:
+    """How statistics are taken, for a dataset."""
     window = "of a batch" if asked.window is None else f"{asked.window:g}"
     return f"from time {asked.start:g} to the end of the record, {asked.batches} batches, window {window}"

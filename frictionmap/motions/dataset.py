@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from .. import checks
 from ..datasets.labels import REFERENCES, attributes
-from ..datasets.motion_labels import IN_SI, MOTIONS, OF_CONTACTS, TIMES, motion_labels, si_name
+from ..datasets.motion_labels import IN_SI, MOTIONS, OF_CONTACTS, SI_LABELS, TIMES, si_name
 from ..datasets.provenance import excitation_of, now
 from ..errors import InputError
 from ..general.dataset import refuse_static
@@ -18,7 +18,7 @@ from ..jobs import Progress, Watch, run_counted
 from ..model.system import System
 from ..units.scales import Scales, Units
 from ..version import __version__
-from .averages import asked_averages, with_averages
+from .averages import asked_averages, averages_of, describe_averages
 from .cells import Asked, Found, Motions
 from .channels import drive_of
 from .holding import largest_forces
@@ -189,8 +189,8 @@ def history(
         raise InputError("beta_hold", f"must be true or false; got {checks.one_line(beta_hold)}")
     holds = beta_hold and not asked.start.moves
     found = _follow(structure, grid, scales, asked, (single, holds), threads, progress, watch)
-    ds = _labelled(structure, grid, asked, found)
-    ds.attrs = {
+    variables, coords = _labelled(structure, grid, asked, found)
+    attrs = {
         "Conventions": "CF-1.11", "title": "Motion in time" if single else "Motions in time",
         "source": f"frictionmap {__version__}", "references": REFERENCES, "system": system.describe(),
         "excitation": excitation_of(system), "history": f"{now()} frictionmap.history",
@@ -198,12 +198,17 @@ def history(
     }  # fmt: skip
     if averages is not None:
         factors = [scale_of(one, scales).time for one in grid.records]
-        ds = with_averages(ds, averages, grid.records, factors)
-        ds = ds.drop_dims("time") if samples == "none" else ds
-    return in_si(ds, scales)
+        variables |= averages_of(xr.Dataset(variables, coords), averages, grid.records, factors)
+        attrs["statistics"] = describe_averages(averages)
+    if samples == "none":
+        variables = {name: one for name, one in variables.items() if "time" not in one.dims}
+        coords.pop("time", None)
+    both = in_si(coords | variables, scales)
+    coords = {name: both.pop(name) for name in coords}
+    return xr.Dataset(both, coords, attrs)
 
 
-def in_si(ds: xr.Dataset, scales: Scales) -> xr.Dataset:
+def in_si(found: Mapping[str, xr.Variable], scales: Scales) -> dict[str, xr.Variable]:
     """Times in seconds; lengths, velocities, accelerations, forces and works in SI units beside ratios."""
     frequency, force, length = (scales.of(kind) for kind in ("frequency", "force", "length"))
     ones: dict[str, float] = {}
@@ -213,29 +218,30 @@ def in_si(ds: xr.Dataset, scales: Scales) -> xr.Dataset:
         ones["force"] = force
     if force is not None and length is not None:
         ones["work"] = force * length
+    both = dict(found)
     if frequency is not None:
         omega = 2.0 * np.pi * frequency
         if length is not None:
             ones["velocity"], ones["acceleration"] = omega * length, omega * omega * length
-        ds = _in_seconds(ds, omega)
+        both |= _in_seconds(found, omega)
     ones |= {f"squared {measure}": one * one for measure, one in ones.items()}
-    added = {}
     for measure, one in ones.items():
         for name in IN_SI.get(measure, ()):
-            if name in ds.variables:
-                label = motion_labels()[si_name(name, measure)]
-                added[si_name(name, measure)] = (ds[name].dims, ds[name].values * one, attributes(label))
-    return ds.assign(added)
+            if name in found:
+                beside = si_name(name, measure)
+                values = found[name].values * one
+                both[beside] = xr.Variable(found[name].dims, values, attributes(SI_LABELS[beside]))
+    return both
 
 
-def _in_seconds(ds: xr.Dataset, omega: float) -> xr.Dataset:
+def _in_seconds(given: Mapping[str, xr.Variable], omega: float) -> dict[str, xr.Variable]:
     found = {}
     for name in TIMES:
-        if name in ds.variables:
-            meaning = ds[name].attrs["long_name"].split(", over")[0]
-            attrs = ds[name].attrs | {"units": "s", "long_name": meaning}
-            found[name] = (ds[name].dims, ds[name].values / omega, attrs)
-    return ds.assign(found)  # at once: each call takes milliseconds
+        if name in given:
+            meaning = given[name].attrs["long_name"].split(", over")[0]
+            attrs = given[name].attrs | {"units": "s", "long_name": meaning}
+            found[name] = xr.Variable(given[name].dims, given[name].values / omega, attrs)
+    return found
 
 
 class Followed(NamedTuple):
@@ -384,7 +390,13 @@ def _hold(structure: Structure, grid: Grid, forces: np.ndarray) -> np.ndarray:
     return found
 
 
-def _labelled(structure: Structure, grid: Grid, asked: Asked, followed: Followed) -> xr.Dataset:
+_Variables = dict[str, xr.Variable]
+
+
+def _labelled(
+    structure: Structure, grid: Grid, asked: Asked, followed: Followed
+) -> tuple[_Variables, _Variables]:
+    """Variables and coordinates."""
     general = structure.system.contact_system
     contacts, elastic = general.count, general.elastic
     cells = list(product(*map(range, grid.shape)))
@@ -412,7 +424,7 @@ def _labelled(structure: Structure, grid: Grid, asked: Asked, followed: Followed
     if followed.hold is not None:
         hold = _hold(structure, grid, followed.hold)
     variables["beta_hold"] = xr.Variable(MOTIONS["beta_hold"].dims, hold, attributes(MOTIONS["beta_hold"]))
-    return xr.Dataset(variables, coords)
+    return variables, coords
 
 
 def _events(ones: list[Found], shape: tuple[int, ...]) -> dict[str, xr.Variable]:

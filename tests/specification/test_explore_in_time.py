@@ -14,6 +14,7 @@ import pytest
 from browser import MOVE, page_of
 from pages import HANG, ask, packet, served
 
+import frictionmap as fm
 from frictionmap import InputError
 from frictionmap.explorer.in_time import around_largest, check, extremes
 from frictionmap.motions.configuration import load_motions
@@ -216,10 +217,29 @@ def test_a_refusal_stands_next_to_its_field(browser, shaken):
         page.wrong.clear()  # the refusal itself, which browsers log
 
 
-def send(server, name, body, **headers):
+def test_a_page_of_motions_from_python():
+    """The push of `BLOCK`, with friction 0.5 at first."""
+    block, push = fm.System(stiffness_ratios=[0.0]), fm.Record([1.0, 1.0], dt=2.0, quantity="force")
+    with fm.explore(block, beta=0.5, record=push, port=0) as page:
+        _, arrays = packet(page._server, "/motion")
+        assert arrays["x"][0].max() == pytest.approx(2.0, rel=1e-12)
+        assert json.loads(ask(page._server, "/scene")[1])["title"] == "Motions in time"
+    refused = [
+        ({"r": (0.5, 1.0)}, "cannot use r with record"), ({"beta": -1.0}, r"^beta must be >= 0"),
+        ({"start": "moving"}, "cannot use start with record"), ({"mu": 0.5}, r"^mu must be >= 1"),
+    ]  # fmt: skip
+    for more, said in refused:
+        with pytest.raises(InputError, match=said):
+            fm.explore(block, record=push, **more)
+    quake = fm.Record([0.0, 1.0, 0.0], dt=0.1, unit="g")
+    with pytest.raises(InputError, match="reference value"):
+        fm.explore(fm.System(), record=quake)
+
+
+def send(server, name, body, path="/record?name=", **headers):
     connection = http.client.HTTPConnection("127.0.0.1", server.server_address[1], timeout=HANG)
     with contextlib.closing(connection):
-        connection.request("POST", f"/record?name={quote(name)}", body, headers)
+        connection.request("POST", path + quote(name), body, headers)
         answer = connection.getresponse()
         return answer.status, answer.read().decode()
 
@@ -238,6 +258,27 @@ def test_a_file_of_a_record_is_one_more_record(tmp_path):
         _, arrays = packet(server, "/motion?record=2&beta=0.5")
         assert arrays["x"][0].max() == pytest.approx(2.0, rel=1e-12)
         assert not list(tmp_path.glob("**/*.csv"))
+
+
+def test_a_pulse_is_one_more_record(tmp_path, shaken):
+    with served(motions_from(tmp_path, BLOCK)) as server:
+        pulse = "/pulse?kind=rectangle&amplitude=1&duration="
+        status, body = send(server, "2", b"", pulse)
+        assert status == 200, body
+        assert json.loads(body)["records"][1]["label"] == "2: rectangle 1, 2"
+        _, arrays = packet(server, "/motion?record=2&beta=0.5")
+        assert arrays["x"][0].max() == pytest.approx(2.0, rel=1e-12)
+        assert send(server, "2", b"", pulse, Origin="http://elsewhere.example")[0] == 403
+    ricker = "/pulse?kind=ricker&duration=0.5%20s&amplitude="
+    assert send(shaken, "0.4 g", b"", ricker)[0] == 200
+    for text, said in (
+        ("0.4 mm", "unit must be one of"),
+        ("strong", "amplitude must be"),
+        ("", "amplitude must be"),
+    ):
+        status, body = send(shaken, text, b"", ricker)
+        assert (status, body.count("\n")) == (400, 1)
+        assert said in body
 
 
 @pytest.mark.parametrize(
@@ -283,6 +324,21 @@ def test_a_file_that_is_chosen_on_the_page(browser, tmp_path):
         page.set_input_files("#file", path)
         page.wait_for_selector("#file + .refused:not([hidden])")
         page.wrong.clear()  # the refusal itself, which browsers log
+
+
+def test_a_pulse_that_is_defined_on_the_page(browser, tmp_path):
+    with served(motions_from(tmp_path, BLOCK)) as server, page_of(browser, server.url, SHOWN) as page:
+        page.click("#pulse summary")
+        page.fill("#pulse-amplitude", "1")
+        page.fill("#pulse-duration", "2 parsec")
+        page.click("#pulse-add")
+        page.wait_for_selector("#pulse .refused:not([hidden])")
+        page.wrong.clear()  # the refusal itself, which browsers log
+        page.fill("#pulse-duration", "2")
+        page.press("#pulse-duration", "Enter")
+        page.wait_for_selector("#record option:nth-child(2)", state="attached")
+        page.wait_for_selector(SHOWN)
+        assert page.input_value("#record") == "2"
 
 
 def test_spectra_have_no_page(tmp_path):

@@ -96,6 +96,34 @@ function paint() {
   find("#key").replaceChildren(...of("mass", shown.masses), ...of("contact", shown.contacts), stuck);
 }
 
+/** Show a record that is being added, or why it is refused. */
+async function add(answer, refused) {
+  refused.hidden = true;
+  try {
+    const { record, records } = await answer;
+    controls.offer("record", records, inControls(view));
+    change({ record });
+  } catch (error) {
+    [refused.textContent, refused.hidden] = [error.message, false];
+  }
+}
+
+/** Fields for a pulse, whose numbers may have units. */
+function takePulses(kinds) {
+  const kind = make("select", { id: "pulse-kind" }, ...kinds.map((name) => new Option(name, name)));
+  const number = (id, placeholder) => make("input", { id, type: "text", placeholder, autocomplete: "off" });
+  const amplitude = number("pulse-amplitude", "such as 0.4 g or 1");
+  const duration = number("pulse-duration", "such as 0.5 s or 2");
+  const refused = make("p", { className: "refused", hidden: true, role: "alert" });
+  const button = make("button", { type: "button", id: "pulse-add" }, "add the pulse");
+  const named = (field, text) => make("label", { htmlFor: field.id }, text);
+  const fields = [named(kind, "shape"), kind, named(amplitude, "largest value"), amplitude, named(duration, "duration"), duration, button, refused];
+  find("#file").nextElementSibling.after(make("details", { id: "pulse" }, make("summary", {}, "or define a pulse"), ...fields));
+  const take = () => add(server.addPulse({ kind: kind.value, amplitude: amplitude.value, duration: duration.value }), refused);
+  button.addEventListener("click", take);
+  for (const field of [amplitude, duration]) field.addEventListener("keydown", ({ key }) => key === "Enter" && take());
+}
+
 /** A field for files of records, which may also be dropped anywhere on the page. */
 function takeFiles() {
   const field = make("input", { type: "file", id: "file", ariaLabel: "File of a record" });
@@ -103,14 +131,7 @@ function takeFiles() {
   const label = make("label", { htmlFor: "file" }, "or choose a file, or drop it here");
   find("#record").after(label, field, refused);
   const take = async (file) => {
-    refused.hidden = true;
-    try {
-      const { record, records } = await server.addRecord(file);
-      controls.offer("record", records, inControls(view));
-      change({ record });
-    } catch (error) {
-      [refused.textContent, refused.hidden] = [error.message, false];
-    }
+    await add(server.addRecord(file), refused);
     field.value = "";
   };
   field.addEventListener("change", () => field.files.length && take(field.files[0]));
@@ -129,6 +150,7 @@ async function begin() {
   controls = new Controls(find("#controls"), scene, change, null, (given) => server.checked(queryOf(given)));
   await server.checked(location.hash.slice(1)).then((found) => (view = found), (error) => say(error.message));
   takeFiles();
+  takePulses(scene.pulses);
   controls.set(inControls(view));
   ask();
 }

@@ -52,9 +52,18 @@ export class Server {
   }
 
   /** Add the record in a file; its number and all records. @param {File} file */
-  async addRecord(file) {
-    const response = await fetch(`record?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file }).catch(() => {
-      throw new Refused("The file was not taken: frictionmap does not respond, or the file is too large.");
+  addRecord(file) {
+    return this.#post(`record?name=${encodeURIComponent(file.name)}`, file, "The file was not taken: frictionmap does not respond, or the file is too large.");
+  }
+
+  /** Add a pulse; its number and all records. @param {object} pulse  kind, amplitude, duration */
+  addPulse(pulse) {
+    return this.#post(`pulse?${new URLSearchParams(pulse)}`, "", "Cannot reach frictionmap: it does not respond. Start it again and reload this page.");
+  }
+
+  async #post(path, body, lost) {
+    const response = await fetch(path, { method: "POST", body }).catch(() => {
+      throw new Refused(lost);
     });
     if (!response.ok) throw new Refused((await response.text()).trim());
     return response.json();

@@ -225,7 +225,7 @@ TESTS = {
     ),
 }
 
-#: Seeds of a test, as many as a quarter of an hour of a shared processor fitted.
-_SEEDS = 80
+#: Seeds of a test: a fit takes half a second.
+_SEEDS = 200
 
 CASES = tuple(Case(name, partial(_made, test=test), _SEEDS) for name, test in TESTS.items())

@@ -22,6 +22,7 @@ from .errors import InputError
 
 __all__ = [
     "BELT_REGIMES",
+    "BREAK_POINTS",
     "CLOSED_FORM",
     "COINCIDENCE",
     "CONTINUOUS",
@@ -94,6 +95,7 @@ QUASI_STATIC = 4
 NOT_COMPUTED = 5
 NOT_PERIODIC = 6
 IRREGULAR = 7
+BREAK_POINTS = 8
 
 #: Statuses of stick-slip that does not repeat; files of version 0.2 have the first.
 WITHOUT_PERIOD = (NOT_PERIODIC, IRREGULAR)

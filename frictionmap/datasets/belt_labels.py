@@ -31,6 +31,12 @@ STATUSES = (
         "a motion that does not repeat: extremes and stuck_fraction are those of its last cycles",
         "no period; extremes and stuck_fraction are those of the last cycles followed",
     ),
+    regimes.Code(
+        regimes.BREAK_POINTS, "break_points",
+        "whether steady sliding is stable differs between the formula of the law, which `growth` is of, and "
+        "its break points, by which motions are followed: make law.error smaller",
+        "near the limit of stability the break points of the law decide; make law.error smaller",
+    ),
 )  # fmt: skip
 
 _REACHABLE = tuple(

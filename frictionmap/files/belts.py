@@ -57,7 +57,7 @@ def describe_belts(ds: xr.Dataset) -> list[str]:
 
 def _lines(ds: xr.Dataset) -> Iterator[str]:
     if "time" in ds.coords:
-        yield _in_words(ds)
+        yield _describe_motion(ds)
         return
     if "regime" in ds:
         codes = regimes.NO_LOAD_REGIMES
@@ -83,7 +83,7 @@ def _lines(ds: xr.Dataset) -> Iterator[str]:
             yield f"{words}: {_range(ds, name)}"
 
 
-def _in_words(ds: xr.Dataset) -> str:
+def _describe_motion(ds: xr.Dataset) -> str:
     """One motion in a line."""
     regime = next(one for one in regimes.NO_LOAD_REGIMES if one.value == int(ds["regime"]))
     words = [regime.name.replace("_", " ")]

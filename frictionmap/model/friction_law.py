@@ -40,19 +40,64 @@ class _Shape(NamedTuple):
     """A function that falls from 1 to 0."""
 
     value: Callable[[np.ndarray], np.ndarray]
+    slope: Callable[[np.ndarray], np.ndarray]  # its derivative
     bend: Callable[[np.ndarray], np.ndarray]  # its second derivative
+    steepest: float  # where it falls most: beyond, it falls ever less
     range: float  # up to which it is followed: beyond, the viscous part alone is left
 
 
 #: How the friction falls from its value at rest to the kinetic one, over the speed in units of its own.
 SHAPES = {
-    "exponential": _Shape(lambda y: np.exp(-y), lambda y: np.exp(-y), 9.0),
-    "gauss": _Shape(lambda y: np.exp(-y * y), lambda y: (4.0 * y * y - 2.0) * np.exp(-y * y), 3.2),
-    "hyperbolic": _Shape(lambda y: 1.0 / (1.0 + y), lambda y: 2.0 / (1.0 + y) ** 3, 20.0),
+    "exponential": _Shape(lambda y: np.exp(-y), lambda y: -np.exp(-y), lambda y: np.exp(-y), 0.0, 9.0),
+    "gauss": _Shape(
+        lambda y: np.exp(-y * y),
+        lambda y: -2.0 * y * np.exp(-y * y),
+        lambda y: (4.0 * y * y - 2.0) * np.exp(-y * y),
+        math.sqrt(0.5),
+        3.2,
+    ),
+    "hyperbolic": _Shape(
+        lambda y: 1.0 / (1.0 + y), lambda y: -1.0 / (1.0 + y) ** 2, lambda y: 2.0 / (1.0 + y) ** 3, 0.0, 20.0
+    ),
     "lorentz": _Shape(
-        lambda y: 1.0 / (1.0 + y * y), lambda y: (6.0 * y * y - 2.0) / (1.0 + y * y) ** 3, 10.0
+        lambda y: 1.0 / (1.0 + y * y),
+        lambda y: -2.0 * y / (1.0 + y * y) ** 2,
+        lambda y: (6.0 * y * y - 2.0) / (1.0 + y * y) ** 3,
+        math.sqrt(1.0 / 3.0),
+        10.0,
     ),
 }
+
+
+class Formula(NamedTuple):
+    """g = q + (1 - q) s(V/V_s) + k V."""
+
+    formula: str
+    kinetic: float
+    speed: float
+    viscous: float
+    error: float  # that its segments may have
+
+    def slope(self, speed: np.ndarray) -> np.ndarray:
+        """g' at speeds."""
+        falls = SHAPES[self.formula].slope(speed / self.speed) / self.speed
+        return (1.0 - self.kinetic) * falls + self.viscous
+
+    def last_fall(self, fall: float) -> float:
+        """Largest speed at which g falls at least as steeply as `fall`; 0 if it does nowhere."""
+        if fall == 0.0 and self.viscous == 0.0 and self.kinetic < 1.0:
+            return math.inf
+        steepest = SHAPES[self.formula].steepest
+        low, high = steepest * self.speed, 2.0 * max(steepest, 1.0) * self.speed
+        if -self.slope(np.array(low)) < fall:
+            return 0.0
+        while -self.slope(np.array(high)) >= fall:
+            high *= 2.0
+        while True:
+            middle = 0.5 * (low + high)
+            if middle in (low, high):
+                return low
+            low, high = (middle, high) if -self.slope(np.array(middle)) >= fall else (low, middle)
 
 
 @dataclass(frozen=True, repr=False)
@@ -69,6 +114,8 @@ class FrictionLaw(Shown):
         Slope of `factor` over `speed` beyond the last break point [-], >= 0.
     error : float
         Largest deviation from the formula that the law was made of [-]; 0 without one.
+    curve : Formula, optional
+        That formula.
 
     Raises
     ------
@@ -80,6 +127,7 @@ class FrictionLaw(Shown):
     factor: Sequence[float] = (1.0,)
     slope: float = 0.0
     error: float = 0.0
+    curve: Formula | None = None
 
     def __post_init__(self) -> None:
         for name in ("speed", "factor"):
@@ -125,6 +173,26 @@ class FrictionLaw(Shown):
         inner = np.diff(self.factor) / np.diff(self.speed)
         return (*map(float, inner), self.slope)
 
+    def slopes_at(self, speed: np.ndarray, segments: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """Slopes just below and just above speeds > 0: those of the formula, if there is one.
+
+        segments : those of the segments in any case
+        """
+        if self.curve is not None and not segments:
+            found = self.curve.slope(speed)
+            return found, found
+        breaks, slopes = np.array(self.speed), np.array(self.slopes)
+        below = slopes[np.searchsorted(breaks, speed, side="left") - 1]
+        return below, slopes[np.searchsorted(breaks, speed, side="right") - 1]
+
+    def last_fall(self, fall: float) -> float:
+        """Largest speed at which the friction falls, at least as steeply as `fall`; 0 if nowhere."""
+        if self.curve is not None:
+            return self.curve.last_fall(fall)
+        ends = [*self.speed[1:], math.inf]
+        falls = (v for v, slope in zip(ends, self.slopes, strict=True) if slope < 0.0 and -slope >= fall)
+        return max(falls, default=0.0)
+
     @property
     def least_slope(self) -> float:
         """The slope of the steepest fall; 0 if the friction falls nowhere."""
@@ -132,6 +200,8 @@ class FrictionLaw(Shown):
 
     def as_keys(self) -> dict[str, Any]:
         """The law as the table `law` of a configuration."""
+        if self.curve is not None:
+            return self.curve._asdict()
         return {"speed": list(self.speed), "factor": list(self.factor), "slope": self.slope}
 
     @property
@@ -176,7 +246,8 @@ def formula_law(
         if found <= limit:
             factor = q + (1.0 - q) * shape.value(y) + k * unit * y
             factor[0] = 1.0
-            return FrictionLaw(tuple((unit * y).tolist()), tuple(factor.tolist()), k, found)
+            curve = Formula(formula, q, unit, k, limit)
+            return FrictionLaw(tuple((unit * y).tolist()), tuple(factor.tolist()), k, found, curve)
     raise InputError(
         "error",
         f"must be >= {found:.2g}, which {MOST_POINTS} break points reach for {formula}; got {limit:g}",

@@ -26,10 +26,7 @@ def sliding_limits(belts: Belts, limit: float, speed: np.ndarray, one_mass: bool
     the mean of both slopes counts, unless the motion already leaves along delta = -1.  A structure is
     unstable there if it is in one of them.
     """
-    law = belts.laws[0]
-    slopes, breaks = np.array(law.slopes), np.array(law.speed)
-    above = slopes[np.searchsorted(breaks, speed, side="right") - 1]
-    below = slopes[np.searchsorted(breaks, speed, side="left") - 1]
+    below, above = belts.laws[0].slopes_at(speed)
     steepest = np.maximum(-np.minimum(above, below), 0.0)
     fall = np.maximum(-0.5 * (above + below), 0.0) if one_mass else steepest
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -52,8 +49,5 @@ def speed_limits(belts: Belts, limit: float, friction: np.ndarray) -> np.ndarray
     """Belt speed above which steady sliding is stable at all speeds, by the friction of the contact; 0 if it
     is stable at every speed.
     """
-    law = belts.laws[0]
-    fall = -np.array(law.slopes)
-    ends = np.append(law.speed[1:], np.inf)
-    unstable = (fall > 0.0) & (friction[:, np.newaxis] * fall >= limit)
-    return np.where(unstable, ends, 0.0).max(axis=1)
+    falls = np.where(friction > 0.0, limit / np.where(friction > 0.0, friction, 1.0), np.inf)
+    return np.array([belts.laws[0].last_fall(fall) for fall in falls.tolist()])

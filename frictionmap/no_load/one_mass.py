@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from .. import checks
+from .. import checks, regimes
 from .._kernels.no_load.fill import fill_cycle_speeds, fill_portraits
 from .._kernels.no_load.portrait import Portraits
 from ..jobs import Job, Progress, Watch, run_counted
+from ..model.friction_law import Formula
 
 _TYPES = {"regime": np.int8, "reachable": np.uint8, "status": np.int8}
 
@@ -65,6 +66,28 @@ def portrait_jobs(
                 )
             )
     return jobs
+
+
+def with_formula(
+    found: Portraits, curve: Formula, zeta: float, speed: np.ndarray, friction: np.ndarray
+) -> Portraits:
+    """Portraits with the growth by the slope of a formula, over (mu, wall_speed, beta).
+
+    Stability of steady sliding follows the slope, which segments have to first order only.
+    """
+    delta = np.broadcast_to(zeta + 0.5 * friction * curve.slope(speed)[:, np.newaxis], found.growth.shape)
+    root = np.sqrt(np.abs(1.0 - delta * delta))
+    aperiodic = np.where(delta < 0.0, root - delta, -1.0 / (np.abs(delta) + root))
+    growth = np.where(np.abs(delta) < 1.0, -delta, aperiodic)
+    stable = growth < 0.0
+    bit = np.uint8(1 << regimes.STEADY_SLIDING)
+    differs = stable != (found.reachable & bit != 0)
+    status = np.where(differs & (found.status == regimes.RESOLVED), regimes.BREAK_POINTS, found.status)
+    reachable = np.where(stable, found.reachable | bit, found.reachable & ~bit)
+    return found._replace(
+        growth=growth, frequency=np.where(np.abs(delta) < 1.0, root, 0.0), status=status.astype(np.int8),
+        reachable=reachable.astype(np.uint8),
+    )  # fmt: skip
 
 
 def cycle_speed_limits(law: Law, zeta: float, mu: np.ndarray, beta: np.ndarray) -> np.ndarray:

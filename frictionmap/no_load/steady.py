@@ -1,16 +1,11 @@
 """Steady sliding of a structure: its place, its stability, and a proof that a motion ends there."""
 
-from typing import Literal
-
 import numpy as np
 from scipy.linalg import null_space, solve_continuous_lyapunov
 
 from ..model.system import System
 from .belts import Belts
 from .sliding import growth_of_sliding, vibrations
-
-#: A break point belongs to the segment below it, or to that above.
-Side = Literal["left", "right"]
 
 #: Vibration that is left of a motion that settles, over displacement and speed of steady sliding: from here
 #: on nothing can be seen of it.
@@ -41,17 +36,8 @@ class Sliding:
         factor = np.array([float(law(abs(v))) for law, v in zip(self._laws, self.speeds, strict=True)])
         self.pull = self._vectors.T @ (np.sign(self.speeds) * kinetic * factor * self.moves)
         self.place = np.linalg.solve(self._stiffness, self.pull)
-        sides: tuple[Side, Side] = ("left", "right")
-        self.growth, self.frequency = max((self._growth(side) for side in sides), key=lambda one: one[0])
-
-    def _segments(self, side: Side) -> np.ndarray:
-        """Segment of every contact at its belt's speed, (N,); on a break point that below or above."""
-        return np.array(
-            [
-                max(int(np.searchsorted(law.speed, abs(v), side)) - 1, 0)
-                for law, v in zip(self._laws, self.speeds, strict=True)
-            ]
-        )
+        self.growth, self.frequency = self._fastest(False)
+        self.followed, _ = self._fastest(True)  # by the segments that motions are followed with
 
     def _slopes(self, segments: np.ndarray) -> np.ndarray:
         """Friction times slope of the law of every contact on a belt."""
@@ -63,11 +49,14 @@ class Sliding:
         z = self._free
         return z.T @ self._mass @ z, z.T @ self._damping @ z, z.T @ self._stiffness @ z, self._vectors @ z
 
-    def _growth(self, side: Side) -> tuple[float, float]:
-        """Rate and frequency of the fastest growing vibration."""
+    def _fastest(self, segments: bool) -> tuple[float, float]:
+        """Rate and frequency of the fastest growing vibration; on break points the faster of both sides."""
         if not self._free.shape[1]:
             return -np.inf, 0.0
-        return growth_of_sliding(*self._reduced(), self._slopes(self._segments(side)))
+        speeds = np.abs(self.speeds)
+        slopes = np.array([law.slopes_at(v, segments) for law, v in zip(self._laws, speeds, strict=True)])
+        sides = (side * self.kinetic * self.moves for side in slopes.T)
+        return max((growth_of_sliding(*self._reduced(), side) for side in sides), key=lambda one: one.growth)
 
     def place_of(self, x: np.ndarray) -> np.ndarray:
         """Place of steady sliding with the resting contacts where they are in x."""
@@ -82,7 +71,7 @@ class Sliding:
         """Whether a motion has settled, where steady sliding is stable."""
         size = np.abs(self.place).max() + np.abs(self.speeds).max()
         off = max(np.abs(x - self.place_of(x)).max(), np.abs(velocity).max())
-        return bool(self.growth < 0.0 and off <= _SETTLED * size)
+        return bool(self.followed < 0.0 and off <= _SETTLED * size)
 
     def attracts(self, x: np.ndarray, velocity: np.ndarray, senses: np.ndarray, segments: np.ndarray) -> bool:
         """Whether a motion certainly ends in steady sliding.

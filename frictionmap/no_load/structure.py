@@ -114,13 +114,13 @@ class Ride:
                 if sliding.attracts(*present) or sliding.is_reached(*present[:2]):
                     return self._sliding(sliding)
                 quiet += 1
-                if quiet > _MOST_QUIET and sliding.growth == 0.0:
+                if quiet > _MOST_QUIET and sliding.followed == 0.0:
                     return self._sliding(sliding)._replace(status=regimes.MARGINAL)
                 if quiet > _MOST_QUIET:
                     return _unresolved(self.problem, regimes.NOT_REACHED)
             elif code == LONG:
                 found = self._averages(friction)
-                return found._replace(status=regimes.MARGINAL) if sliding.growth == 0.0 else found
+                return found._replace(status=regimes.MARGINAL) if sliding.followed == 0.0 else found
             else:
                 return _unresolved(self.problem, regimes.TOO_MANY_EVENTS)
 

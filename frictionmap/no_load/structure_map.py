@@ -44,7 +44,7 @@ def starts(sliding: Sliding, system: System, belts: Belts) -> dict[str, tuple[np
     size = float(np.abs(sliding.place).max() + np.abs(sliding.speeds).max() / modes.w[0])
     still = np.zeros(system.n)
     found = {"release": (np.linalg.solve(modes.stiffness, pull), release)}
-    if sliding.growth >= 0.0:
+    if sliding.followed >= 0.0:
         found["small"] = (sliding.place + _SMALL * size * shape, still)
     found["large"] = (sliding.place + _LARGE * size * shape, still)
     return found
@@ -106,6 +106,8 @@ def _put(
     for name, field in (OF_CONTACTS | OF_MASSES | OF_CELLS).items():
         found[name][at] = getattr(shown, field)
     found["growth"][at], found["growth_frequency"][at] = sliding.growth, sliding.frequency
+    if (sliding.growth < 0.0) != (sliding.followed < 0.0) and shown.status == regimes.RESOLVED:
+        found["status"][at] = regimes.BREAK_POINTS
     bits = 1 << regimes.STEADY_SLIDING if sliding.growth < 0.0 else 0
     for motion in motions.values():
         ends: Any = motion.regime

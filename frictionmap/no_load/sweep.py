@@ -16,7 +16,7 @@ from ..units.scales import Scales, Units, scales_of
 from .belts import Belts, belts_of
 from .dataset import belt_dataset
 from .limits import sliding_limits, slope_limits_of, speed_limits
-from .one_mass import Law, cycle_speed_limits, empty_portraits, portrait_jobs, run
+from .one_mass import Law, cycle_speed_limits, empty_portraits, portrait_jobs, run, with_formula
 from .structure_map import structure_values
 
 #: Variables of the dataset and the fields of `Portraits` that they show.
@@ -140,6 +140,8 @@ def _one_mass_values(given: Given, threads: int | None, progress: Progress | Non
     run(portrait_jobs(law_of(belts), given.system.zeta, axes_of_cells, found), threads, progress)
     if belts.share[0] < 0.0:  # the mirror image
         found = found._replace(highest=-found.lowest, lowest=-found.highest)
+    if belts.laws[0].curve is not None:
+        found = with_formula(found, belts.laws[0].curve, given.system.zeta, axes["wall_speed"], kinetic)
     values = {name: getattr(found, field) for name, field in _FIELDS.items()}
     return values | {name: values[name][..., np.newaxis] for name in ("x_max", "x_min")}
 

@@ -142,3 +142,61 @@ def test_arguments_of_loads_are_refused(unused):
 def test_a_belt_at_rest_is_refused():
     with pytest.raises(fm.InputError, match="must be > 0"):
         fm.sweep(one_mass(), wall_speed=[0.0, 0.1], beta=[1.0])
+
+
+@pytest.mark.parametrize(
+    ("formula", "slope"),
+    [
+        ("exponential", lambda y: -np.exp(-y)),
+        ("gauss", lambda y: -2.0 * y * np.exp(-y * y)),
+        ("hyperbolic", lambda y: -1.0 / (1.0 + y) ** 2),
+        ("lorentz", lambda y: -2.0 * y / (1.0 + y * y) ** 2),
+    ],
+)
+def test_growth_follows_the_slope_of_a_formula(formula, slope):
+    """g' = (1 - q) s'(V/V_s)/V_s + k, growth = -zeta - beta g'/2 below critical damping."""
+    law = {"formula": formula, "kinetic": 0.6, "speed": 0.3, "viscous": 0.02}
+    v = np.linspace(0.05, 1.5, 40)
+    ds = fm.sweep(one_mass(law=law), wall_speed=v, beta=[0.5, 1.0])
+    rises = 0.4 / 0.3 * slope(v / 0.3) + 0.02
+    for b, beta in enumerate((0.5, 1.0)):
+        expected = -0.03 - 0.5 * beta * rises
+        assert ds.growth.values[0, :, b] == pytest.approx(expected, rel=1e-12, abs=1e-14)
+        assert ds.growth_frequency.values[0, :, b] == pytest.approx(np.sqrt(1.0 - expected**2), rel=1e-12)
+        last = float(ds.sliding_speed_lim[b])
+        rise = 0.4 / 0.3 * slope(last / 0.3) + 0.02
+        assert beta * rise == pytest.approx(-0.06, rel=1e-12)
+        assert not (ds.growth.values[0, v > last, b] > 0.0).any()
+    stable = (ds.also_reachable.values & (1 << fm.regimes.STEADY_SLIDING)) != 0
+    assert (stable == (ds.growth.values < 0.0)).all()
+    fall = -rises[rises < 0.0]
+    assert ds.beta_sliding_lim.values[rises < 0.0] == pytest.approx(0.06 / fall, rel=1e-12)
+
+
+def test_cells_in_which_break_points_decide_are_marked():
+    """A coarse polygon has a wrong slope: its motions near the limit of stability are not the formula's."""
+    law = {"formula": "exponential", "kinetic": 0.75, "speed": 0.3, "error": 0.03}
+    ds = fm.sweep(one_mass(law=law), wall_speed=np.linspace(0.3, 1.0, 36), beta=[1.0])
+    marked = ds.status.values == fm.regimes.BREAK_POINTS
+    assert 0 < marked.sum() < marked.size
+    polygon = one_mass(
+        law=fm.FrictionLaw(*[getattr(fm.Contact(law=law).law, k) for k in ("speed", "factor")])
+    )
+    own = fm.sweep(polygon, wall_speed=ds.wall_speed.values, beta=[1.0])
+    assert (marked == ((own.growth.values < 0.0) != (ds.growth.values < 0.0))).all()
+
+
+def test_a_law_of_a_formula_is_written_as_one():
+    law = {"formula": "gauss", "kinetic": 0.7, "speed": 0.2, "viscous": 0.05, "error": 0.004}
+    made = fm.Contact(law=law).law
+    assert made.as_keys() == law
+    assert fm.Contact(law=made.as_keys()).law == made
+
+
+def test_undamped_masses_squeal_at_every_speed_at_which_friction_falls():
+    law = {"formula": "hyperbolic", "kinetic": 0.7, "speed": 0.2}
+    ds = fm.boundaries(fm.System(contacts=[fm.Contact(law=law)]), wall_speed=[0.1], beta=[0.0, 1.0])
+    assert ds.sliding_speed_lim.values.tolist() == [0.0, np.inf]
+    rises = fm.System(contacts=[fm.Contact(law=law | {"viscous": 0.1})])
+    ds = fm.boundaries(rises, wall_speed=[0.1], beta=[1.0])
+    assert 0.3 / 0.2 / (1.0 + float(ds.sliding_speed_lim[0]) / 0.2) ** 2 == pytest.approx(0.1, rel=1e-12)

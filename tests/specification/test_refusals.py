@@ -67,7 +67,7 @@ map good.toml --set titel=x
 map good.toml --set title=1
     title must be text; got 1
 map good.toml --set system.contct=fixed-wall
-    unknown key 'system.contct' (did you mean contact?); valid: contact, contact_masses, load_mass, load, mass_ratios, stiffness_ratios, masses, springs, dampers, damping_ratios, matrices, reduce, rayleigh, decouple, frequency_scale, stiffness_scale, excitation, damping_reference, base_control, modes, beam, plate, load_harmonics, load_file, waveform, harmonics, load_offset, contact_stiffness, wall_velocity, wall_speed, normal_load, contacts
+    unknown key 'system.contct' (did you mean contact?); valid: contact, contact_masses, load_mass, load, mass_ratios, stiffness_ratios, masses, springs, dampers, damping_ratios, matrices, sectors, reduce, rayleigh, decouple, frequency_scale, stiffness_scale, excitation, damping_reference, base_control, modes, beam, plate, load_harmonics, load_file, waveform, harmonics, load_offset, contact_stiffness, wall_velocity, wall_speed, normal_load, contacts
 map good.toml --set solver.step=9
     unknown key 'solver.step' (did you mean steps?); valid: start, cycles, tolerance, steps, skip, steady, outputs
 map good.toml --set grid.r.stepp=1

@@ -4,12 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._kernels.general.problem import Problem
 from .._kernels.general.record import make_record
 from .._kernels.general.series import Friction
 from .._kernels.history.kept import Kept, make_kept
 from .._kernels.history.motion import CREEPING, Course, follow_record, make_memory
-from ..general.problem import fastest
 from .bed import held
 from .channels import Drive
 from .starts import Start
@@ -109,7 +107,7 @@ class Motions:
         lengths = len(np.unique(steps))
         lengths = lengths if lengths <= _MOST_LENGTHS else 0
         course = Course(np.ascontiguousarray(terms), steps, self.drive.times, self.drive.jumps)
-        problem = self._at(kinetic)
+        problem = self.problem
         while True:
             masses = np.empty((0, problem.squares.size))
             record = make_record(problem, masses, 0)
@@ -129,16 +127,6 @@ class Motions:
             int(status), kept, memory.counts, state, motion.sense, end, slept if asleep >= 0 else np.nan, None
         )
         return found._replace(place=self._place(found))
-
-    def _at(self, kinetic: np.ndarray) -> Problem:
-        """The problem under this friction, which is damping where it depends on the speed."""
-        law = self.problem.law
-        if not law.slope.size:
-            return self.problem
-        structure = self.structure
-        damping = np.abs(law.slope).max(axis=1) * kinetic
-        rate = fastest(structure.modal, structure.spring, damping)
-        return self.problem._replace(rates=np.array([rate]))
 
     def _rounding(self, static: np.ndarray, scale: float) -> np.ndarray:
         """Rounding errors of the watched quantities, from the sizes of what they are sums of."""

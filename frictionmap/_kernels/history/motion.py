@@ -13,7 +13,7 @@ from ..general.follow import count_time, pass_event, prepare
 from ..general.laws.coulomb import first_event, reaches, watched_slope
 from ..general.laws.elastic import rest_springs
 from ..general.laws.kinds import has_constraint
-from ..general.laws.speed import first_bound, has_law, is_at_speed, set_segments
+from ..general.laws.speed import first_bound, has_law, is_at_speed, rate_under, set_segments
 from ..general.pattern import BOX_ROWS, PARTICIPATES, settle, stop_exactly
 from ..general.problem import (
     HALF,
@@ -298,7 +298,7 @@ def _begin(problem, friction, memory, course, start, senses):
     row, motion = memory.row, memory.motion
     row.intervals[HALF], row.intervals[LOAD_TERMS] = 1, course.pieces.shape[2]
     row.loads[:] = 0.0
-    parts = _parts_of(problem, course.steps[0])
+    parts = _parts_of(problem, friction, course.steps[0])
     set_interval(problem, 0, row, course.steps[0] / parts)
     set_tables(memory.tables, row.numbers[H])
     _put_pieces(row, course.pieces[0], 0, parts)
@@ -323,9 +323,9 @@ def _begin(problem, friction, memory, course, start, senses):
 
 
 @kernel
-def _parts_of(problem, step):
+def _parts_of(problem, friction, step):
     """Equal parts of an interval in which series are exact to rounding."""
-    return max(1, int(math.ceil(problem.rates[0] * step / TURN)))
+    return max(1, int(math.ceil(rate_under(problem, 0, friction) * step / TURN)))
 
 
 @kernel
@@ -344,7 +344,7 @@ def _follow_interval(problem, friction, memory, course, kept, k, jump, listed):
     int : RESOLVED, TOO_MANY_EVENTS or UNDETERMINED
     """
     step = course.steps[k]
-    parts = _parts_of(problem, step)
+    parts = _parts_of(problem, friction, step)
     _set_length(problem, memory, step / parts)
     tables = memory.tables
     begin = kept.clock[0]

@@ -7,6 +7,7 @@ import numpy as np
 from .._kernels.general.problem import TURN
 from .._kernels.phases.fill import Cells, Grid
 from .._kernels.phases.problem import COUNT_ROWS, ELASTIC, Problem, Row, make_row
+from ..general.problem import ties
 from .system import PhaseSystem
 
 
@@ -56,8 +57,27 @@ def problem_of(system: PhaseSystem, modes: Modal, observed: np.ndarray) -> Probl
         np.array([one.stiffness for one in contacts], dtype=float),
         np.array([one.moved for one in contacts], dtype=float), knots, forces, slopes,
         np.array([len(one.displacement) for one in springs], dtype=np.int64).reshape(len(springs)),
-        np.ascontiguousarray(observed @ modes.phi),
+        np.ascontiguousarray(observed @ modes.phi), _ties(system),
     )  # fmt: skip
+
+
+def _ties(system: PhaseSystem) -> np.ndarray:
+    """The rigid contacts that together keep both ends of an elastic one at rest, (N, N) bool; see `ties`.
+
+    The limit of a contact whose normal force moves changes while its ends rest: it may slip there.
+    """
+    contacts = system.contacts
+    if not contacts:
+        return np.zeros((0, 0), dtype=bool)
+    vectors = _rows([one.direction for one in contacts], system.n)
+    # ties are between speeds of one kind only: a wall_speed is a wall_velocity at one r
+    belt = np.array([[one.wall_speed, one.wall_velocity] for one in contacts])
+    found = ties(
+        np.column_stack((vectors, belt)), np.array([one.moved for one in contacts]), np.zeros(len(contacts)),
+        np.array([one.stiffness for one in contacts]),
+    )  # fmt: skip
+    found[[one.law != ELASTIC or one.normal is not None for one in contacts]] = False
+    return found
 
 
 def fastest(problem: Problem) -> float:

@@ -146,3 +146,25 @@ def test_a_large_preload_is_a_spring_and_a_held_contact():
     wanted = amplitudes(STIFFNESS + 1.3 * np.outer(D, D) + 2.5 * np.outer(C, C), r)
     assert found["regime"] == fm.regimes.PERMANENT_STICKING
     assert np.abs(0.5 * found["peak_to_peak"] - wanted).max() < 1e-13
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.15])
+def test_an_elastic_and_a_rigid_contact_side_by_side(speed):
+    """Both rest together, and the elastic one begins to slip when the rigid one lets go, or follows."""
+    r, beta = 0.55, 0.3
+    contacts = [
+        fm.Contact("fixed-wall", 2, wall_speed=speed),
+        fm.Contact("fixed-wall", 2, ratio=0.7, stiffness=2.0, wall_speed=speed),
+    ]
+    system = fm.System(
+        matrices={"K": STIFFNESS, "M": MASS, "C": DAMPING}, frequency_scale=1.0, load_harmonics={1: LOAD},
+        contacts=contacts,
+    )  # fmt: skip
+    outputs = ["peak_to_peak", "work_friction", "stops_per_cycle"]
+    wanted = fm.sweep(system, [r], [beta], outputs=outputs).isel(mu=0, r=0, beta=0)
+    pair = [PhaseContact(C, wall_speed=speed), PhaseContact(C, ratio=0.7, stiffness=2.0, wall_speed=speed)]
+    found = cell(structure(contacts=pair), r, beta)
+    assert wanted.stops_per_cycle[0] > 0
+    assert found["stops_per_cycle"][0] == wanted.stops_per_cycle[0]
+    assert np.abs(found["peak_to_peak"] - wanted.peak_to_peak.values).max() < 1e-11
+    assert np.abs(found["work_friction"] - wanted.work_friction.values).max() < 1e-11

@@ -12,6 +12,7 @@ series    Taylor series of a step in the present phase; forces that hold rigid c
 watch     quantities whose zero ends a phase, and the first of these zeros
 pattern   the phase from a state, and which rigid contacts slide after an event
 change    the phase after an event, counted
+tables    tables of the phases of one r: series of a step by the coordinates at its beginning
 tangent   derivatives of the motion by its state at the beginning
 record    extremes, works and distances of a steady motion, and its steps
 follow    the motion from one time to another

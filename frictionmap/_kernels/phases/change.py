@@ -1,7 +1,7 @@
 """The phase after an event, counted."""
 
 from ..compiler import kernel
-from .pattern import is_at_rest, release_contact, settle
+from .pattern import is_at_rest, release_contact, rest_tied, settle
 from .problem import (
     DOWN,
     ELASTIC,
@@ -20,7 +20,10 @@ from .problem import (
     TURNS,
     UP,
 )
-from .series import begin_terms, dot, factor_held, is_held, limit_at, slave_forces, sliding_velocity
+from .series import begin_terms, dot, factor_held, is_held, is_tied, limit_at, slave_forces, sliding_velocity
+
+#: Distance of a force from its limit, relative to it, that is rounding error of the time at rest.
+_ROUNDING = 1e-9
 
 
 @kernel
@@ -83,7 +86,8 @@ def _end_slide(problem, row, cell, motion, j):
     before = motion.sense[j]
     found = settle(problem, row, cell, motion, j, before)
     for i in range(problem.law.size):
-        if motion.sense[i] != 0 and (i == j or is_at_rest(problem, row, motion, i)):
+        rigid = problem.law[i] == RIGID and motion.sense[i] != 0
+        if rigid and (i == j or is_at_rest(problem, row, motion, i)):
             motion.lead[i, UP] = 1
     if motion.sense[j] == 0:
         motion.counts[STOPS, j] += 1.0
@@ -98,7 +102,8 @@ def _release(problem, row, cell, motion, j, sense):
     if cell.static[j] > 1.0:
         found = release_contact(problem, row, cell, motion, j, sense)
         for i in range(problem.law.size):
-            if motion.sense[i] != 0 and is_at_rest(problem, row, motion, i):
+            rigid = problem.law[i] == RIGID and motion.sense[i] != 0
+            if rigid and is_at_rest(problem, row, motion, i):
                 motion.lead[i, UP] = 1
         return found
     motion.sense[j] = sense
@@ -127,6 +132,33 @@ def _change_friction(problem, row, cell, motion, j, which):
 
 
 @kernel
+def _wake_tied(problem, row, cell, motion, who):
+    """Begin the motion of elastic contacts at the limit that a rigid one has kept at rest: slip or not.
+
+    The velocity begins at 0, with mu = 1 the acceleration too; its first term that is not 0 decides.
+    """
+    began = False
+    for j in range(problem.law.size):
+        woken = motion.idle[j] and not is_tied(problem, motion, j)
+        if not woken or abs(motion.f[j]) < cell.limit[j] * (1.0 - _ROUNDING):
+            continue
+        if not began:
+            begin_terms(problem, row, cell, motion, 4)
+            began = True
+        drops = who < problem.law.size and cell.static[who] > 1.0
+        order = 1 if drops else 2
+        sense = 1 if motion.f[j] > 0.0 else -1
+        rate = dot(problem.chi, j, motion.terms.moves[order + 1])
+        rate -= problem.moved[j] * motion.drive[order + 1, problem.squares.size]
+        if sense * rate > 0.0:
+            motion.sense[j] = sense
+            motion.lead[j, UP] = order
+            _count_slip(motion, j)
+        else:
+            motion.lead[j, UP if sense > 0 else DOWN] = order + 1
+
+
+@kernel
 def change_phase(problem, row, cell, motion, who, what):
     """Change the pattern at an event; False if contacts do not determine their forces.
 
@@ -144,7 +176,10 @@ def change_phase(problem, row, cell, motion, who, what):
     else:
         found = _change_friction(problem, row, cell, motion, who, what)
     slave_forces(problem, cell, motion)
-    return factor_held(problem, row, motion) and found
+    found = factor_held(problem, row, motion) and found
+    _wake_tied(problem, row, cell, motion, who)
+    rest_tied(problem, cell, motion)
+    return found
 
 
 @kernel

@@ -20,7 +20,7 @@ from .orbit import (
     state_size,
     take_state,
 )
-from .pattern import begin_pattern
+from .pattern import begin_pattern, rest_tied
 from .record import clear_record
 from .series import begin_terms, factor_held
 from .tangent import begin_tangent
@@ -279,9 +279,10 @@ def _save(problem, motion, memory, events):
 
 
 @kernel
-def _restore(problem, motion, memory, events):
+def _restore(problem, cell, motion, memory, events):
     """Go back to the motion that was kept."""
     put_state(problem, motion, memory.kept[1], memory.kept_patterns[1])
+    rest_tied(problem, cell, motion)
     for j in range(problem.law.size):
         for which in range(3):
             motion.lead[j, which] = events.leads[j, which]
@@ -371,7 +372,7 @@ def find_cycle(problem, row, cell, motion, memory, events, start, limits):
         period, found = _try_cycle(problem, row, cell, motion, memory, events, back, off)
         if period > 0.0 and _record(problem, row, cell, motion, memory, period) == FOLLOWED:
             return Cycle(REPEATS, period, found)
-        _restore(problem, motion, memory, events)
+        _restore(problem, cell, motion, memory, events)
         if not factor_held(problem, row, motion):
             return Cycle(FAILS, time, np.nan)
     take_state(problem, motion, memory.start, memory.pattern)

@@ -6,10 +6,12 @@ import numpy as np
 
 from ... import regimes
 from ..compiler import entry, kernel
+from ..compiler.packed import packed
 from .cycles import FAILS, REPEATS, SETTLES, WANDERS, find_cycle, make_events
 from .orbit import make_memory
 from .problem import Cell, make_motion
 from .steady import find_steady
+from .tables import forget_tables
 
 #: Columns of `Cells.numbers`; without a load the period over 1/omega_1, whether the motion settles, and the
 #: time of the record.
@@ -87,56 +89,55 @@ def put_cell(motion, memory, found, out, at):
     _put_motion(motion, memory, out, at)
 
 
+@kernel
+def _put_friction(row, grid, cell, at):
+    """Set the friction, the preloads and the constant loads of a cell."""
+    _copy(grid.limit[at], cell.limit)
+    _copy(grid.static[at], cell.static)
+    _copy(grid.preload[at], cell.preload)
+    for i in range(cell.constant.size):
+        cell.constant[i] = row.h * row.h / (row.r * row.r) * grid.constant[at, i]
+
+
 @entry
-def fill_cells(problem, row, grid, steps, out, cancel):
-    """Fill the cells of one r; return the motion, whose record is that of the last cell.
+def _fill_loaded(problem, row, grid, cell, motion, memory, out, cancel):
+    """Fill the cells of one r.
 
     Parameters
     ----------
-    problem, row : Problem, Row
-    grid, out : Grid, Cells
-    steps : steps that the record keeps
+    problem, row, grid, out : Problem, Row, Grid, Cells
+    cell, motion, memory : Cell, Motion, Memory, overwritten
     cancel : (1,) not 0 where the rest is not wanted
     """
-    modes = problem.squares.size
-    motion = make_motion(problem, steps)
-    memory = make_memory(problem, motion.tangent.shape[0])
-    constant = np.zeros(modes)
-    scale = row.h * row.h / (row.r * row.r)
+    problem, row, grid, out = packed(problem), packed(row), packed(grid), packed(out)
+    cell, motion, memory = packed(cell), packed(motion), packed(memory)
     for at in range(grid.limit.shape[0]):
         if cancel[0] != 0:
             break
-        for i in range(modes):
-            constant[i] = scale * grid.constant[at, i]
-        cell = Cell(grid.limit[at], grid.static[at], grid.preload[at], constant)
+        _put_friction(row, grid, cell, at)
+        forget_tables(motion.tables, cell)
         found = find_steady(problem, row, cell, motion, memory, grid.start, grid.cycles)
         put_cell(motion, memory, found, out, at)
-    return motion
 
 
 @entry
-def fill_cycles(problem, row, grid, free, steps, out, cancel):
-    """Fill cells without a load; return the motion, whose record is that of the last cell.
+def _fill_free(problem, row, grid, free, cell, motion, memory, events, out, cancel):
+    """Fill cells without a load.
 
     Parameters
     ----------
-    problem, row : Problem, Row
-    grid, out : Grid, Cells
-    free : Free
-    steps : steps that the record keeps
+    problem, row, grid, free, out : Problem, Row, Grid, Free, Cells
+    cell, motion, memory, events : Cell, Motion, Memory, Events, overwritten
     cancel : (1,) not 0 where the rest is not wanted
     """
-    modes = problem.squares.size
-    motion = make_motion(problem, steps)
-    size = motion.tangent.shape[0] + 1  # the period is one more unknown
-    memory, events = make_memory(problem, size), make_events(problem, size)
-    constant = np.zeros(modes)
+    problem, row, grid, free = packed(problem), packed(row), packed(grid), packed(free)
+    cell, motion, memory, events = packed(cell), packed(motion), packed(memory), packed(events)
+    out = packed(out)
     for at in range(grid.limit.shape[0]):
         if cancel[0] != 0:
             break
-        for i in range(modes):
-            constant[i] = row.h * row.h * grid.constant[at, i]
-        cell = Cell(grid.limit[at], grid.static[at], grid.preload[at], constant)
+        _put_friction(row, grid, cell, at)
+        forget_tables(motion.tables, cell)
         limits = (free.slowest, free.longest, free.settles[at] != 0)
         found = find_cycle(problem, row, cell, motion, memory, events, free.starts[at], limits)
         settled, lost = found.code == SETTLES, found.code == FAILS
@@ -148,4 +149,43 @@ def fill_cycles(problem, row, grid, free, steps, out, cancel):
         out.numbers[at, AVERAGED] = 0.0 if settled or lost else found.time * row.h
         if not (settled or lost):
             _put_motion(motion, memory, out, at)
+
+
+def _empty_cell(problem):
+    """A cell without friction."""
+    contacts, modes = problem.chi.shape
+    return Cell(np.zeros(contacts), np.ones(contacts), np.zeros(contacts), np.zeros(modes))
+
+
+def fill_cells(problem, row, grid, steps, out, cancel):
+    """Fill the cells of one r; return the motion, whose record is that of the last cell.
+
+    Parameters
+    ----------
+    problem, row : Problem, Row
+    grid, out : Grid, Cells
+    steps : steps that the record keeps
+    cancel : (1,) not 0 where the rest is not wanted
+    """
+    motion = make_motion(problem, row, steps)
+    memory = make_memory(problem, motion.tangent.shape[0])
+    _fill_loaded(problem, row, grid, _empty_cell(problem), motion, memory, out, cancel)
+    return motion
+
+
+def fill_cycles(problem, row, grid, free, steps, out, cancel):
+    """Fill cells without a load; return the motion, whose record is that of the last cell.
+
+    Parameters
+    ----------
+    problem, row : Problem, Row
+    grid, out : Grid, Cells
+    free : Free
+    steps : steps that the record keeps
+    cancel : (1,) not 0 where the rest is not wanted
+    """
+    motion = make_motion(problem, row, steps)
+    size = motion.tangent.shape[0] + 1  # the period is one more unknown
+    memory, events = make_memory(problem, size), make_events(problem, size)
+    _fill_free(problem, row, grid, free, _empty_cell(problem), motion, memory, events, out, cancel)
     return motion

@@ -7,9 +7,17 @@ from ..general.problem import SECTION
 from .change import change_phase, count_time
 from .problem import put_loads
 from .record import record_step
-from .series import advance, begin_step, observe, stop_exactly
+from .series import advance, begin_step, observe, slave_forces, stop_exactly
+from .tables import (
+    advance_by_table,
+    advance_tangent_by_table,
+    find_table,
+    is_quiet,
+    observe_by_table,
+    put_units,
+)
 from .tangent import advance_tangent, before_event, through_event
-from .watch import clear_leads, first_event
+from .watch import clear_leads, first_event, has_leads
 
 #: What became of a motion: followed; more events in a step than are followed; no pattern is consistent.
 FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
@@ -43,6 +51,37 @@ def pass_event(problem, row, cell, tau, motion, who, what, derive):
 
 
 @kernel
+def _step_by_table(problem, row, cell, tau, table, rest, motion, derive):
+    """Follow the motion to the next event of a step, or to its end, with the tables of its phase.
+
+    Parameters
+    ----------
+    problem, row, cell : Problem, Row, Cell
+    tau : phase
+    table : number of the tables
+    rest, motion, derive : see `step_on`
+
+    Returns
+    -------
+    (x, who, what) : as `step_on`
+    """
+    put_units(problem, row, cell, tau, motion)
+    step, who, what = rest, -1, 0
+    if has_leads(motion) or not is_quiet(problem, cell, motion, table):
+        observe_by_table(problem, motion, table)
+        found, who, what = first_event(problem, cell, motion, rest)
+        step = min(found, rest)
+    if step > 0.0:
+        if derive:
+            advance_tangent_by_table(problem, motion, table, step)
+        count_time(problem, motion, motion.counts, step * row.h)
+        advance_by_table(problem, motion, table, step)
+        slave_forces(problem, cell, motion)
+        clear_leads(motion)
+    return step, who, what
+
+
+@kernel
 def step_on(problem, row, cell, tau, interval, rest, motion, derive):
     """Follow the motion to the next event of a step, or to its end; the pattern does not change.
 
@@ -59,6 +98,9 @@ def step_on(problem, row, cell, tau, interval, rest, motion, derive):
     (x, who, what) : length of the way, and the event, see `first_event`
     """
     recorded = motion.record.active[0] != 0
+    table = -1 if recorded else find_table(problem, row, motion)
+    if table >= 0:
+        return _step_by_table(problem, row, cell, tau, table, rest, motion, derive)
     begin_step(problem, row, cell, tau, interval, motion)
     observe(problem, row, motion, recorded)
     found, who, what = first_event(problem, cell, motion, rest)

@@ -3,7 +3,7 @@
 from ..compiler import kernel
 from ..general.problem import LONG
 from .problem import ELASTIC, RIGID, SMOOTH
-from .series import begin_terms, dot, factor_held, is_held, limit_at, slave_forces, sliding_velocity
+from .series import begin_terms, dot, factor_held, is_held, is_tied, limit_at, slave_forces, sliding_velocity
 
 #: Excess of a holding force over the limit, relative to it, that is rounding: forces are sums of some ten
 #: terms that may be larger.
@@ -137,6 +137,16 @@ def find_piece(problem, motion, s):
 
 
 @kernel
+def rest_tied(problem, cell, motion):
+    """Let elastic contacts rest, at the limit if they slip, whose ends rigid ones keep at rest."""
+    for j in range(problem.law.size):
+        motion.idle[j] = motion.open[j] == 0 and is_tied(problem, motion, j)
+        if motion.idle[j] and motion.sense[j] != 0:
+            motion.f[j] = motion.sense[j] * cell.limit[j]
+            motion.sense[j] = 0
+
+
+@kernel
 def begin_pattern(problem, row, cell, motion):
     """Find the pattern of a state that begins a motion; elastic contacts begin without force, if they can."""
     for s in range(motion.piece.size):
@@ -156,6 +166,7 @@ def begin_pattern(problem, row, cell, motion):
         touches = problem.presses[j] and motion.open[j] == 0 and force == 0.0
         if touches and _opens_at_zero(problem, row, cell, motion, j):
             motion.open[j], motion.sense[j] = 1, 0
+    rest_tied(problem, cell, motion)
     return found and factor_held(problem, row, motion)
 
 
@@ -183,4 +194,5 @@ def repair_pattern(problem, row, cell, motion):
                 motion.sense[j] = 0
             motion.f[j] = min(max(motion.f[j], -most), most)
     slave_forces(problem, cell, motion)
+    rest_tied(problem, cell, motion)
     return factor_held(problem, row, motion)

@@ -29,6 +29,13 @@ COUNT_ROWS = 10
 Z, W, F, D = 0, 1, 2, 3
 
 
+#: Phases that have tables at most, and bytes of all tables.  Where fewer than _FEWEST fit, or a load has more
+#: harmonics, every step is expanded on its own.
+_MOST_PHASES, _FEWEST = 48, 6
+_BYTES = 2**24
+_MOST_HARMONICS = 3
+
+
 class Problem(NamedTuple):
     """A system of m modes, N contacts and S springs of K knots at most."""
 
@@ -49,6 +56,7 @@ class Problem(NamedTuple):
     slopes: np.ndarray  # (S, K + 1)
     knot_count: np.ndarray  # (S,) int
     observed: np.ndarray  # (R, m) further displacements whose extremes are wanted
+    ties: np.ndarray  # (N, N) bool: row of an elastic contact, the rigid ones that keep its ends at rest
 
 
 class Row(NamedTuple):
@@ -103,6 +111,20 @@ class Record(NamedTuple):
     patterns: np.ndarray  # (steps, 2 N + S) int
 
 
+class Tables(NamedTuple):
+    """Tables of P phases, U units and R rows: velocities, friction, d.x, springs, modes and their rates."""
+
+    keys: np.ndarray  # (P,) int: the phase; -1: none
+    columns: np.ndarray  # (P U R, WIDTH) series
+    controls: np.ndarray  # (P U (3 N + 2 S), WIDTH) control points of what is watched
+    bounds: np.ndarray  # (P U (3 N + 2 S),) bounds on their errors
+    onward: np.ndarray  # (P, size, U) state at the end of a step
+    units: np.ndarray  # (U,)
+    parts: np.ndarray  # (2, size, size) derivatives within a step; scratch
+    last: np.ndarray  # (2,) int: the phase met last, and how many have tables
+    zero: Cell  # a cell without friction and preload
+
+
 class Motion(NamedTuple):
     """A motion and its memory."""
 
@@ -126,6 +148,8 @@ class Motion(NamedTuple):
     counts: np.ndarray  # (COUNT_ROWS, N)
     crossings: np.ndarray  # (S,)
     record: Record
+    tables: Tables
+    idle: np.ndarray  # (N,) bool: elastic contacts whose ends rigid ones keep at rest
 
 
 @kernel
@@ -162,8 +186,40 @@ def make_record(problem, steps):
     )  # fmt: skip
 
 
+@kernel
+def unit_count(problem, row, size):
+    """Number of units of a step."""
+    return size + problem.squares.size + 2 * row.orders.size + 1
+
+
+@kernel
+def row_count(problem):
+    """Number of rows of a unit."""
+    return 3 * problem.law.size + problem.along.shape[0] + 2 * problem.squares.size
+
+
 @entry
-def make_motion(problem, steps):
+def make_tables(problem, row, size):
+    """Allocate tables; of no phase where they are not used."""
+    contacts, springs, modes = problem.law.size, problem.along.shape[0], problem.squares.size
+    units, rows = unit_count(problem, row, size), row_count(problem)
+    slots = 3 * contacts + 2 * springs
+    phases = min(_MOST_PHASES, _BYTES // (8 * units * (rows + slots) * WIDTH))
+    usable = phases >= _FEWEST and row.orders.size <= _MOST_HARMONICS
+    for j in range(contacts):
+        usable = usable and problem.moved[j] == 0.0
+    if not usable:
+        phases = 0
+    return Tables(
+        np.full(phases, -1), np.zeros((phases * units * rows, WIDTH)),
+        np.zeros((phases * units * slots, WIDTH)), np.zeros(phases * units * slots),
+        np.zeros((phases, size, units)), np.zeros(units), np.zeros((2, size, size)), np.zeros(2, np.int64),
+        Cell(np.zeros(contacts), np.ones(contacts), np.zeros(contacts), np.zeros(modes)),
+    )  # fmt: skip
+
+
+@entry
+def make_motion(problem, row, steps):
     """Allocate a motion, whose record keeps this many steps."""
     contacts, modes = problem.chi.shape
     springs = problem.along.shape[0]
@@ -178,7 +234,18 @@ def make_motion(problem, steps):
         np.zeros((4 * contacts + springs + problem.observed.shape[0] + 2, WIDTH)),
         np.zeros((size, size)), np.zeros((6, size + modes + contacts)), np.zeros((2, contacts), np.int64),
         np.zeros((COUNT_ROWS, contacts)), np.zeros(springs), make_record(problem, steps),
+        make_tables(problem, row, size), np.zeros(contacts, np.bool_),
     )  # fmt: skip
+
+
+@kernel
+def put_growth(row, n, cosine, sine, drive):
+    """Add a harmonic of the load, by the cosine and the sine of its phase at the beginning of a step."""
+    for k in range(LONG):
+        c, s = row.growth[n, k] * cosine, row.growth[n, k] * sine
+        for i in range(drive.shape[1]):
+            drive[k, i] += row.phasors[0, n, i] * c + row.phasors[1, n, i] * s
+        cosine, sine = -sine, cosine
 
 
 @kernel
@@ -189,12 +256,7 @@ def put_loads(row, tau, drive):
             drive[k, i] = 0.0
     for n in range(row.orders.size):
         angle = row.orders[n] * tau
-        cosine, sine = np.cos(angle), np.sin(angle)
-        for k in range(LONG):
-            c, s = row.growth[n, k] * cosine, row.growth[n, k] * sine
-            for i in range(drive.shape[1]):
-                drive[k, i] += row.phasors[0, n, i] * c + row.phasors[1, n, i] * s
-            cosine, sine = -sine, cosine
+        put_growth(row, n, np.cos(angle), np.sin(angle), drive)
 
 
 @entry

@@ -276,6 +276,18 @@ def slave_forces(problem, cell, motion):
 
 
 @kernel
+def is_tied(problem, motion, j):
+    """Whether rigid contacts that are held keep both ends of an elastic contact at rest."""
+    count = 0
+    for i in range(problem.law.size):
+        if problem.ties[j, i]:
+            if not is_held(problem, motion, i):
+                return False
+            count += 1
+    return count > 0
+
+
+@kernel
 def sliding_velocity(problem, row, motion, j):
     """Velocity in a contact relative to its wall; `drive` is that of the present time."""
     wall = problem.moved[j] * motion.drive[1, problem.squares.size] + row.belt[j]

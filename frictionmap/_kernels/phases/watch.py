@@ -59,7 +59,7 @@ def is_watched(problem, motion, j, which):
     """Whether a quantity of a contact is watched in the present phase."""
     if which == NORMAL:
         return problem.presses[j]
-    if motion.open[j] != 0 or problem.law[j] == SMOOTH:
+    if motion.open[j] != 0 or problem.law[j] == SMOOTH or motion.idle[j]:
         return False
     return which == UP or motion.sense[j] == 0
 
@@ -90,6 +90,17 @@ def first_event(problem, cell, motion, rest):
     if best > rest:
         return NONE, -1, 0
     return best, who, what
+
+
+@kernel
+def has_leads(motion):
+    """Whether some zeros at the beginning of the step are known."""
+    sum_ = 0
+    for j in range(motion.sense.size):
+        sum_ += motion.lead[j, 0] + motion.lead[j, 1] + motion.lead[j, 2]
+    for s in range(motion.piece.size):
+        sum_ += motion.lead_spring[s, 0] + motion.lead_spring[s, 1]
+    return sum_ > 0
 
 
 @kernel

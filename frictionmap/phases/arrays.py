@@ -62,22 +62,31 @@ def problem_of(system: PhaseSystem, modes: Modal, observed: np.ndarray) -> Probl
 
 
 def _ties(system: PhaseSystem) -> np.ndarray:
-    """The rigid contacts that together keep both ends of an elastic one at rest, (N, N) bool; see `ties`.
+    """The rigid contacts that together keep an elastic one as it is, (N, N) bool; see `ties`.
 
-    The limit of a contact whose normal force moves changes while its ends rest: it may slip there.
+    They keep both its ends at rest, and d.x if its normal force moves.
     """
-    contacts = system.contacts
+    contacts, count = system.contacts, len(system.contacts)
     if not contacts:
         return np.zeros((0, 0), dtype=bool)
-    vectors = _rows([one.direction for one in contacts], system.n)
-    # ties are between speeds of one kind only: a wall_speed is a wall_velocity at one r
-    belt = np.array([[one.wall_speed, one.wall_velocity] for one in contacts])
+    vectors = [one.direction for one in contacts]
+    vectors += [np.zeros(system.n) if one.normal is None else one.normal for one in contacts]
+    # a wall_speed and a wall_velocity are the same at one r only
+    belts = [[one.wall_speed, one.wall_velocity] for one in contacts] + [[0.0, 0.0]] * count
+    moved = [one.moved for one in contacts] + [0.0] * count
+    # all vectors d, and the c of elastic contacts, are asked for
+    asked = [one.stiffness for one in contacts] + [1.0] * count
     found = ties(
-        np.column_stack((vectors, belt)), np.array([one.moved for one in contacts]), np.zeros(len(contacts)),
-        np.array([one.stiffness for one in contacts]),
+        np.column_stack((_rows(vectors, system.n), np.array(belts))), np.array(moved), np.zeros(2 * count),
+        np.array(asked),
     )  # fmt: skip
-    found[[one.law != ELASTIC or one.normal is not None for one in contacts]] = False
-    return found
+    ends, pressed = found[:count, :count], found[count:, :count]
+    for j, one in enumerate(contacts):
+        if one.law != ELASTIC or (one.normal is not None and not (ends[j].any() and pressed[j].any())):
+            ends[j] = False
+        elif one.normal is not None:
+            ends[j] |= pressed[j]
+    return np.ascontiguousarray(ends)
 
 
 def fastest(problem: Problem) -> float:

@@ -5,7 +5,7 @@ import pytest
 
 import frictionmap as fm
 from frictionmap.phases.quantities import TABLE
-from frictionmap.phases.solve import sweep_phases
+from frictionmap.phases.solve import response_phases, sweep_phases
 from frictionmap.phases.system import PhaseContact, PhaseSpring, PhaseSystem
 
 MASS = np.diag([1.0, 1.4, 0.8])
@@ -168,3 +168,21 @@ def test_an_elastic_and_a_rigid_contact_side_by_side(speed):
     assert found["stops_per_cycle"][0] == wanted.stops_per_cycle[0]
     assert np.abs(found["peak_to_peak"] - wanted.peak_to_peak.values).max() < 1e-11
     assert np.abs(found["work_friction"] - wanted.work_friction.values).max() < 1e-11
+
+
+def test_elastic_contacts_whose_limit_a_rigid_one_keeps_constant():
+    """Friction grows with the displacement of the mass itself, which a rigid contact holds at times."""
+    r, first = 0.62, np.array([1.0, 0.0, 0.0])
+    contacts = [
+        PhaseContact(first, stiffness=3.9, ratio=0.4),
+        PhaseContact(first, stiffness=2.7, normal=-first, normal_stiffness=3.0, friction=0.14, preload=0.5),
+        PhaseContact(first, static=1.2),
+    ]
+    found = response_phases(structure(contacts=contacts), r, 0.45, 1.0, points=200)
+    assert found["status"] == fm.regimes.RESOLVED
+    assert found["stops_per_cycle"][2] > 0
+    given = float(found["work_input"])
+    taken = float(found["work_damping"] + found["work_friction"].sum())
+    assert abs(given - taken) < 1e-12 * given
+    limit = 0.14 * np.maximum(0.5 - 3.0 * found["x"][0], 0.0)
+    assert (np.abs(found["friction"][1]) <= limit + 1e-12).all()

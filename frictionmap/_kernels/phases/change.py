@@ -135,12 +135,14 @@ def _change_friction(problem, row, cell, motion, j, which):
 def _wake_tied(problem, row, cell, motion, who):
     """Begin the motion of elastic contacts at the limit that a rigid one has kept at rest: slip or not.
 
-    The velocity begins at 0, with mu = 1 the acceleration too; its first term that is not 0 decides.
+    The velocity begins at 0, with mu = 1 the acceleration too; its first term that is not 0 decides, beside
+    that of the limit.
     """
     began = False
     for j in range(problem.law.size):
         woken = motion.idle[j] and not is_tied(problem, motion, j)
-        if not woken or abs(motion.f[j]) < cell.limit[j] * (1.0 - _ROUNDING):
+        limit = limit_at(problem, cell, j, dot(problem.normal, j, motion.q))
+        if not woken or abs(motion.f[j]) < limit * (1.0 - _ROUNDING):
             continue
         if not began:
             begin_terms(problem, row, cell, motion, 4)
@@ -150,7 +152,8 @@ def _wake_tied(problem, row, cell, motion, who):
         sense = 1 if motion.f[j] > 0.0 else -1
         rate = dot(problem.chi, j, motion.terms.moves[order + 1])
         rate -= problem.moved[j] * motion.drive[order + 1, problem.squares.size]
-        if sense * rate > 0.0:
+        change = problem.lift[j] * dot(problem.normal, j, motion.terms.moves[order + 1])
+        if sense * problem.spring[j] * rate > change:
             motion.sense[j] = sense
             motion.lead[j, UP] = order
             _count_slip(motion, j)

@@ -10,7 +10,7 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..spectral_radius import spectral_radius
 from .change import clear_counts
-from .follow import FOLLOWED, MOST_IMMEDIATE, follow_time, pass_event, step_on
+from .follow import FOLLOWED, INSTANT, MOST_IMMEDIATE, follow_time, pass_event, step_on
 from .orbit import (
     begin_return,
     distance,
@@ -350,7 +350,7 @@ def find_cycle(problem, row, cell, motion, memory, events, start, limits):
     while time < longest:
         step, who, what = step_on(problem, row, cell, 0.0, -1, 1.0, motion, False)
         time += step
-        immediate = immediate + 1 if step == 0.0 else 0
+        immediate = immediate + 1 if step <= INSTANT else 0
         if immediate > MOST_IMMEDIATE:
             return Cycle(FAILS, time, np.nan)
         if who < 0:

@@ -142,7 +142,7 @@ def rest_tied(problem, cell, motion):
     for j in range(problem.law.size):
         motion.idle[j] = motion.open[j] == 0 and is_tied(problem, motion, j)
         if motion.idle[j] and motion.sense[j] != 0:
-            motion.f[j] = motion.sense[j] * cell.limit[j]
+            motion.f[j] = motion.sense[j] * limit_at(problem, cell, j, dot(problem.normal, j, motion.q))
             motion.sense[j] = 0
 
 

@@ -81,6 +81,8 @@ _RATIOS = {
     "stuck_fraction": _real("part of the cycle in which the mass sticks", least=0.0),
     "x_max": _real("largest displacement of the masses, over P/k1", "", (*CELL, "dof")),
     "x_min": _real("least displacement of the masses, over P/k1", "", (*CELL, "dof")),
+    "z_max": _real("largest displacement in the contact, over P/k1"),
+    "z_min": _real("least displacement in the contact, over P/k1"),
     "multiplier": _cycle_label("factor of a small deviation per cycle", least=0.0),
     "segment_crossings": _real("crossings of break points of the law per cycle", least=0.0),
     "unstable_maximum": _real(
@@ -116,7 +118,7 @@ _RATIOS = {
 
 #: Variables and axes with a counterpart in SI units where the reference values are known, by measure.
 MEASURES = {
-    "length": ("x_max", "x_min", "unstable_maximum", "x", "z"),
+    "length": ("x_max", "x_min", "unstable_maximum", "x", "z", "z_max", "z_min"),
     "time": ("cycle_period", "time"),
     "velocity": ("wall_speed", "v", "cycle_speed_lim", "sliding_speed_lim"),
     "force": ("beta_sliding_lim", "friction"),
@@ -135,7 +137,7 @@ BELTS = _RATIOS | {
 #: Variables that have one value per contact where there are several.
 OF_CONTACTS = (
     "stops_per_cycle", "turns_per_cycle", "stuck_fraction", "segment_crossings", "z", "friction", "direction",
-    "z_m", "friction_N",
+    "z_max", "z_min", "z_m", "z_max_m", "z_min_m", "friction_N",
 )  # fmt: skip
 
 #: Coordinates; the others are variables.

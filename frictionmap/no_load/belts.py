@@ -69,6 +69,11 @@ def _refuse_loads(system: System) -> None:
         raise InputError("cannot use", "excitation", "= 'base' without a load: the base is at rest; omit it")
     if system.load_mass != system.dofs.numbers[0]:
         raise InputError("cannot use", "load_mass", "without a load: belt speeds take its place; omit it")
+    if system.contact_system.points is not None:
+        raise InputError(
+            "cannot compute motions without a load of a structure given by modes, a beam or a plate: this is "
+            "not offered; give matrices"
+        )
     if system.rigid_modes:
         raise InputError(
             "cannot compute motions without a load of a free structure; add a spring to the ground"

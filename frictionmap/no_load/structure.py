@@ -69,6 +69,8 @@ class Motion(NamedTuple):
     crossings: np.ndarray  # (N,) of break points, per cycle
     highest: np.ndarray  # (n,) displacements of the masses
     lowest: np.ndarray
+    contact_highest: np.ndarray  # (N,) displacements in the contacts
+    contact_lowest: np.ndarray
     multiplier: float
     state: np.ndarray  # (2, m) modes and their velocities, in the middle of a phase
     senses: np.ndarray  # (N,) there
@@ -247,7 +249,7 @@ class Ride:
         return Motion(
             regime, regimes.RESOLVED, period * self.h, stops, counts[TURNS].copy(), counts[STUCK] / period,
             counts[CROSSINGS].copy(), ranges[HIGH, contacts:].copy(), ranges[LOW, contacts:].copy(),
-            multiplier, y, senses,
+            ranges[HIGH, :contacts].copy(), ranges[LOW, :contacts].copy(), multiplier, y, senses,
         )  # fmt: skip
 
     def _averages(self, friction: Friction) -> Motion:
@@ -266,9 +268,10 @@ class Ride:
         x, _, senses, _ = self._present()
         place = sliding.place_of(x)
         stuck = (senses == 0).astype(float)
+        z = self.modal.chi @ (self.modal.phi.T @ self.modal.mass @ place)
         state = np.array([self.modal.phi.T @ self.modal.mass @ place, np.zeros(self.modal.squares.size)])
         return Motion(
-            regimes.STEADY_SLIDING, regimes.RESOLVED, np.nan, still, still, stuck, still, place, place,
+            regimes.STEADY_SLIDING, regimes.RESOLVED, np.nan, still, still, stuck, still, place, place, z, z,
             np.nan, state, senses.copy(),
         )  # fmt: skip
 
@@ -278,8 +281,8 @@ def _unresolved(problem: Problem, status: int) -> Motion:
     unknown = np.full(contacts, np.nan)
     places = np.full(modes, np.nan)
     return Motion(
-        regimes.UNRESOLVED, status, np.nan, unknown, unknown, unknown, unknown, places, places, np.nan,
-        np.zeros((2, modes)), np.zeros(contacts, np.int64),
+        regimes.UNRESOLVED, status, np.nan, unknown, unknown, unknown, unknown, places, places, unknown,
+        unknown, np.nan, np.zeros((2, modes)), np.zeros(contacts, np.int64),
     )  # fmt: skip
 
 

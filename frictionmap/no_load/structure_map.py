@@ -21,7 +21,7 @@ _LARGE = 5.0
 #: Variables and the fields of `Motion` that they show; of all contacts, of all masses, of the cell.
 OF_CONTACTS = {
     "stops_per_cycle": "stops", "turns_per_cycle": "turns", "stuck_fraction": "stuck",
-    "segment_crossings": "crossings",
+    "segment_crossings": "crossings", "z_max": "contact_highest", "z_min": "contact_lowest",
 }  # fmt: skip
 OF_MASSES = {"x_max": "highest", "x_min": "lowest"}
 OF_CELLS = {"regime": "regime", "status": "status", "cycle_period": "period", "multiplier": "multiplier"}

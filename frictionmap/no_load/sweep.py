@@ -143,6 +143,7 @@ def _one_mass_values(given: Given, threads: int | None, progress: Progress | Non
     if belts.laws[0].curve is not None:
         found = with_formula(found, belts.laws[0].curve, given.system.zeta, axes["wall_speed"], kinetic)
     values = {name: getattr(found, field) for name, field in _FIELDS.items()}
+    values |= {"z_max": values["x_max"], "z_min": values["x_min"]}
     return values | {name: values[name][..., np.newaxis] for name in ("x_max", "x_min")}
 
 

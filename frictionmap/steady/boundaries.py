@@ -63,7 +63,7 @@ def boundaries(
         is omitted.  `frictionmap.features` computes all points.
 
         With wall_speed: `beta_slope_lim`, `beta_slope_certificate`, `beta_sliding_lim` on wall_speed,
-        `sliding_speed_lim` on beta, and for one mass `cycle_speed_lim` on (mu, beta), theory.md 18.
+        `sliding_speed_lim` on beta, and for one mass `cycle_speed_lim` on (mu, beta), theory.md 11.
 
         Where C couples modes, `beta_lim_modal` and `peak_threshold`, which treat modes separately, are NaN.
 

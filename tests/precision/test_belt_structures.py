@@ -59,7 +59,10 @@ def test_cycles_of_another_program(reference_table):
             ("stops", "stops"), ("turns", "turns"), ("break_point_crossings", "crossings")
         ):  # fmt: skip
             assert getattr(cycle, field).tolist() == row[name]
-        for name, field in (("x_max", "highest"), ("x_min", "lowest"), ("stuck_fraction", "stuck")):
+        for name, field in (
+            ("x_max", "highest"), ("x_min", "lowest"), ("stuck_fraction", "stuck"),
+            ("z_max", "contact_highest"), ("z_min", "contact_lowest"),
+        ):  # fmt: skip
             assert getattr(cycle, field) == pytest.approx(np.array(row[name]), rel=1e-10, abs=1e-12), name
         assert cycle.multiplier == pytest.approx(row["multiplier"], rel=1e-9, abs=1e-7)
 

@@ -76,7 +76,8 @@ def _refuse_loads(system: System) -> None:
         )
     if system.rigid_modes:
         raise InputError(
-            "cannot compute motions without a load of a free structure; add a spring to the ground"
+            "cannot compute motions without a load of a free structure: no spring holds it at a place; add a "
+            "spring to the ground"
         )
 
 

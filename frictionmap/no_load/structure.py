@@ -43,6 +43,9 @@ _STEPS, _CLOSED, _NEARLY = 15, 1e-14, 1e-11
 #: Change of the state over a part of the period, over the velocity, that is none.
 _SAME = 1e-9
 
+#: Rate of the state, over the velocity of the motion before, below which it is at rest.
+_MOVES = 1e-2
+
 #: How far from the state it began with, over the distance of the two maxima, Newton's method may lead.
 _AWAY = 50.0
 
@@ -202,9 +205,11 @@ class Ride:
         for _ in range(_STEPS):
             self.put(y, senses)
             before = self._rates(friction)
+            if np.abs(before).max() < _MOVES * size:
+                return None  # steady sliding, which closes over any time
             self.put(y, senses)
-            if fly(self.problem, friction, self.flight, period, True, False) < 0:
-                return None
+            if fly(self.problem, friction, self.flight, period, True, False) <= 0:
+                return None  # without an event the motion is linear, and part of no cycle of its own
             end, pattern = self._taken()
             if (pattern != senses).any():
                 return None

@@ -303,3 +303,22 @@ def test_a_search_that_would_not_end_has_a_status():
     found = cell(law_of([(0, 1), (5, 0)], 0.0), 0.0, 0.02)
     assert (found["regime"], found["status"]) == (regimes.STICK_SLIP_CYCLE, regimes.NOT_REACHED)
     assert found["period"] == pytest.approx(6.7368371917651, rel=1e-11)
+
+
+def test_cycles_about_sliding_that_small_motions_leave_without_oscillation():
+    """delta <= -1 in the band of steady sliding: the cycle lies within what would be its first vibrations."""
+    speeds = [0.0, 0.3206545956513897, 0.8081545911513008, 1.0581718977763648, 1.5429847334582727, 2.0]
+    factors = [1.0, 0.4919488384619021, 1.0390923402832564, 0.4642211885313451, 0.6826301470842421, 1.0]
+    law, v, beta, mu = law_of(list(zip(speeds, factors, strict=True)), 0.0), 0.85, 1.4, 1.47
+    found = cell(law, 0.3, v, beta, mu)
+    assert found["growth"] > 1.0
+    assert found["frequency"] == 0.0
+    assert found["regime"] == regimes.CYCLE_WITHOUT_STOPS
+    assert found["reachable"] == 1 << regimes.CYCLE_WITHOUT_STOPS
+    simulation = Simulation(law, 0.3, v, beta, mu)
+    x = found["highest"] + 0.1
+    for _ in range(4):
+        x, time, stop = simulation.turn([x, 0.0])
+    assert stop is None
+    assert x == pytest.approx(found["highest"], rel=1e-8)
+    assert time == pytest.approx(found["period"], rel=1e-8)

@@ -246,3 +246,27 @@ def test_an_undamped_structure_with_constant_friction_is_marginal():
     ds = fm.sweep(system, wall_speed=[0.5], beta=[0.5])
     assert ds.growth.values == 0.0
     assert ds.status.values == fm.regimes.MARGINAL
+
+
+def test_random_laws_by_both_engines():
+    """One mass as such and as a structure: steep laws, strong damping, decays within a turn."""
+    rng = np.random.default_rng(11)
+    seen = set()
+    for _ in range(24):
+        speed = np.concatenate(([0.0], np.cumsum(rng.uniform(0.05, 0.5, rng.integers(1, 6)))))
+        factor = np.concatenate(([1.0], rng.uniform(0.4, 1.1, speed.size - 1)))
+        law = fm.FrictionLaw(speed, factor, float(rng.choice([0.0, 0.05, 0.3])))
+        zeta, mu = float(rng.choice([0.005, 0.05, 0.3])), [1.0, 1.4]
+        system = fm.System(damping_ratios=zeta, contacts=[fm.Contact(law=law)])
+        belts = belts_of(system)
+        speeds, betas = np.sort(rng.uniform(0.02, 2.0, 2)), np.sort(rng.uniform(0.05, 2.0, 2))
+        exact = fm.sweep(system, wall_speed=speeds, beta=betas, mu=mu)
+        for (m, i, b), regime in np.ndenumerate(exact.regime.values):
+            sliding = sliding_of(system, belts, speeds[i], betas[b], mu[m])
+            ends = motions_of(Ride(system, belts, speeds[i], betas[-1]), sliding, system, belts)
+            cell = exact.isel(mu=m, wall_speed=i, beta=b)
+            assert ends["release"].regime == regime
+            assert ends["release"].period == pytest.approx(float(cell.cycle_period), rel=1e-9, nan_ok=True)
+            assert all(int(cell.also_reachable) >> end.regime & 1 for end in ends.values())
+            seen |= {end.regime for end in ends.values()}
+    assert seen == {4, 5, 6}

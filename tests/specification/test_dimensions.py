@@ -226,7 +226,7 @@ def all_leaves():
 def test_every_number_is_in_the_table_or_has_no_dimension():
     of_system = {re.sub(r"\[[12]\]$", "", key) for key in (*DIMENSIONS, *OF_MATRICES)}
     dimensional = {
-        *(f"system.{key}" for key in of_system), *(f"grid.{key}" for key in KINDS),
+        *(f"system.{key}" for key in of_system), *(f"grid.{key}" for key in (*KINDS, "wall_speed")),
         *(f"design.{key}" for key in OF_DESIGN), *(f"units.{key}" for key in UNIT_KINDS),
         *OF_MOTIONS, *OF_STRUCTURES,
     }  # fmt: skip

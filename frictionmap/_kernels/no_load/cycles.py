@@ -32,6 +32,8 @@ from .orbit import (
     follow,
     next_maximum,
     release_of,
+    segment_above,
+    segment_below,
 )
 
 #: Distance from a critical maximum, over the size of the motion, at which its interval begins: rounding
@@ -240,14 +242,24 @@ def _joint(belt, search, count, a, b, steady):
     return count
 
 
+@inner_kernel
+def _leaves_at_once(belt):
+    """Whether every small motion about steady sliding leaves its band: driven, and without oscillation."""
+    above, below = segment_above(belt, belt.v), segment_below(belt, belt.v)
+    return damping_in(belt, above) <= -1.0 or damping_in(belt, below) <= -1.0
+
+
 @kernel
 def find_between(belt, search, count, begin, end, steady):
     """Find all cycles with maxima between two limits; of them, `count` are known.
 
-    Below the first critical maximum after steady sliding there is none: every turn has the same factor.
+    Below the first critical maximum after steady sliding there is none: every turn has the same factor.  It
+    is steady sliding itself where small motions do not oscillate, but leave their band.
     """
     many = critical_maxima(belt, search, begin, end)
     a = begin if begin > steady else math.nan
+    if math.isnan(a) and _leaves_at_once(belt):
+        a = steady + _NEXT * (abs(end) + abs(steady) if math.isfinite(end) else abs(steady) + belt.v)
     for i in range(many + 1):
         b = search.critical[i] if i < many else end
         gap = _NEXT * (abs(b) + abs(steady))

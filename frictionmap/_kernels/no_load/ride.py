@@ -250,7 +250,6 @@ def march(problem, friction, memory, contact, tolerance, most, longest):
     """
     problem, friction, memory = packed(problem), packed(friction), packed(memory)
     trail, motion = memory.trail, memory.motion
-    trail.counts[_CALMS] = 0
     if not factor_held(problem, memory.row, motion):
         return -1, 0
     for _ in range(_MOST_EVENTS * most):
@@ -266,7 +265,7 @@ def march(problem, friction, memory, contact, tolerance, most, longest):
             if back > 0:
                 return BACK, back
         if trail.counts[_CALMS] >= _CALM or trail.numbers[_TIME] - trail.numbers[_LAST] > longest:
-            trail.numbers[_LAST] = trail.numbers[_TIME]
+            trail.numbers[_LAST], trail.counts[_CALMS] = trail.numbers[_TIME], 0
             return QUIET, 0
         if trail.counts[_MAXIMA] >= most:
             return LONG, 0

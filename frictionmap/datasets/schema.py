@@ -257,9 +257,14 @@ def _range(label: Label) -> tuple[float, float]:
 
 
 def _wrong(values: np.ndarray, label: Label) -> np.ndarray:
-    """Where values are invalid; codes are consecutive integers."""
+    """Where values are invalid."""
     least, most = _range(label)
     wrong = (values < least) | (values > most)
+    valid = [code.value for code in (*label.codes, *label.also)]
+    if label.flags == "flag_masks":
+        wrong |= (values.astype(np.int64) & ~sum(valid)) != 0
+    elif len(valid) < most - least + 1 and valid:  # the codes have gaps
+        wrong |= ~np.isin(values, valid)
     if values.dtype.kind == "f":
         if not label.nan:
             wrong |= np.isnan(values)

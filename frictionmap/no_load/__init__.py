@@ -1,10 +1,10 @@
 """Motions on belts without a load: steady sliding, its stability, and cycles.
 
-=============  =====================================================================================
+=============  ==================================================================================
 module         what is in it
-=============  =====================================================================================
+=============  ==================================================================================
 belts          what moves with the belt, and what has no meaning without a load
-sliding        steady sliding of any structure: growth of small vibrations, slope at which they grow
+sliding        growth of small vibrations about steady sliding of any structure
 one_mass       all steady motions of one mass over mu, belt speed and beta
 limits         friction and belt speeds at which steady sliding loses stability
 dataset        motions as datasets: labels, units, provenance
@@ -13,5 +13,5 @@ structure      cycles of structures: marched from a start, and closed by Newton'
 structure_map  these motions over mu, belt speed and beta
 response       one motion in time, over one cycle
 sweep          all motions over mu, belt speed and beta; their limits alone
-=============  =====================================================================================
+=============  ==================================================================================
 """

@@ -1,4 +1,4 @@
-"""Steady sliding of any structure: growth of small vibrations, and the slope of friction at which they grow.
+"""Steady sliding of any structure: growth of small vibrations.
 
 Time is counted over 1/omega_1; a slope of friction over speed times beta acts as the damping beta g' c c^T.
 """
@@ -7,8 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import InputError
-from ..general.slopes import SlopeLimits, first_order, limits_of
+from ..general.slopes import first_order
 
 #: Real part of a root, over the largest root, that is rounding error.
 _ROUNDING = 1e-13
@@ -44,21 +43,3 @@ def vibrations(
     """Matrix of small vibrations, of first order; see `growth_of_sliding`."""
     whole = damping + np.einsum("j,ja,jb->ab", slopes, vectors, vectors)
     return first_order(mass, whole, stiffness)
-
-
-def slope_limit(
-    mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray, vector: np.ndarray
-) -> SlopeLimits:
-    """Slope at which steady sliding on one contact loses stability, see `general.slopes`.
-
-    Raises
-    ------
-    InputError
-        A mode has no damping.
-    """
-    if not np.linalg.eigvals(first_order(mass, damping, stiffness)).real.max() < 0.0:
-        raise InputError(
-            "damping",
-            "must act on every mode; got a mode without it, in which vibration grows under any falling slope",
-        )
-    return limits_of(mass, damping, stiffness, vector)

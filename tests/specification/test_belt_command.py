@@ -8,6 +8,7 @@ import pytest
 
 import frictionmap as fm
 from frictionmap.command_line.cli import main
+from frictionmap.files.reading import read
 
 TEXT = """
 title = "A brake pad"
@@ -229,3 +230,14 @@ def test_arguments_of_responses_without_a_load():
         fm.response(system, wall_speed=0.5, beta=0.5, start="rest")
     with pytest.raises(fm.InputError, match=r"^wall_speed must be > 0"):
         fm.response(system, wall_speed=0.0, beta=0.5)
+
+
+def test_codes_that_belts_do_not_have_are_refused(config, tmp_path):
+    """Between their codes there are gaps, where those of motions under loads are."""
+    ds = fm.sweep(fm.load_config(config))
+    for name, wrong in (("regime", 2), ("also_reachable", 2), ("status", 4)):
+        changed = ds.copy(deep=True)
+        changed[name][0, 0, 0] = wrong
+        changed.to_netcdf(tmp_path / "wrong.nc")
+        with pytest.raises(fm.InputError, match=rf"{name} must be .*; got {wrong} at"):
+            read(tmp_path / "wrong.nc")

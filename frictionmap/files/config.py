@@ -287,8 +287,11 @@ def _system_table(tree: Mapping[str, object], folder: Path) -> Mapping[str, Any]
         given = table.get(key)
         if isinstance(given, str) and given and given not in WAVEFORMS:
             table[key] = folder / given
-    if isinstance(table.get("modes"), str) and table["modes"]:
-        table["modes"] = folder / table["modes"]
+    modes = table.get("modes")
+    if isinstance(modes, str) and modes:
+        table["modes"] = folder / modes
+    elif isinstance(modes, Mapping) and isinstance(modes.get("file"), str):
+        table["modes"] = {**modes, "file": folder / modes["file"]}
     if isinstance(table.get("contacts"), list):
         table["contacts"] = [_contact(one, folder) for one in table["contacts"]]
     matrices = table.get("matrices", {})
@@ -315,9 +318,10 @@ def _contact(given: Any, folder: Path) -> Any:
 
 
 def _matrix_files(table: Mapping[str, Any]) -> list[Path]:
-    """The files that the matrices are in."""
-    matrices = table.get("matrices")
-    every = matrices.values() if isinstance(matrices, Mapping) else [matrices]
+    """The files that the matrices or modes are in."""
+    every: list[Any] = []
+    for given in (table.get("matrices"), table.get("modes")):
+        every += given.values() if isinstance(given, Mapping) else [given]
     return [one for one in every if isinstance(one, Path)]
 
 

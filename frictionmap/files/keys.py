@@ -255,6 +255,7 @@ _PLATE = _structure(
 )
 _MODES = either(
     _NAME,
+    table({"file": _NAME, "points": several(_NAME), "normalised": word("mass")}, ("file",)),
     table(
         {
             "frequencies": several(either(number(least=0.0), with_unit("frequency"))),
@@ -274,7 +275,7 @@ STRUCTURE_KEYS = (
         _MODES,
         example='{ frequencies = ["31.2 Hz"], points = ["tip"], shapes = [[1.9]], normalised = "mass" }',
         words="{ frequencies, damping_ratios, points, shapes, residual or compliance, and modal_masses or "
-        'normalised = "mass" }',
+        'normalised = "mass" }; or a file (.npz, .mat, .csv, .uff), also as { file, points, normalised }',
     ),
     Key(
         "beam",

@@ -1,13 +1,16 @@
 """Structures that are given by modes: modes of tests and programs, uniform beams, rectangular plates."""
 
-from collections.abc import Mapping
+import os
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, Protocol, overload
 
 import numpy as np
 
 from .. import checks
 from ..errors import InputError
+from ..structures.mode_files import read_modes
 from ..structures.modes import Modes
 from ..structures.uniform import Beam, Plate
 from .general import ContactSystem
@@ -24,6 +27,9 @@ _RIVALS = {
     "rayleigh": "modes have damping_ratios",
     "decouple": "modes have no matrix C",
 }
+
+#: Keys of modes in a file.
+_OF_FILES = ("file", "points", "normalised")
 
 #: Keys of modes given as a mapping.
 _KEYS = ("frequencies", "damping_ratios", "points", "shapes", "residual", "compliance", "modal_masses",
@@ -85,21 +91,41 @@ def modes_of(system: Owner, given: Any) -> tuple[Modes | None, float]:
             raise InputError("cannot use", name, f"with modes: {why}; omit one")
     if isinstance(given, Beam | Plate):
         return given.as_modes(), float(given.mass * given.frequencies[0] ** 2)
+    if isinstance(given, str | os.PathLike):
+        return read_modes(Path(given)), 1.0
     if isinstance(given, Mapping):
-        return _from_mapping(given), 1.0
+        return (_from_file(given) if "file" in given else _from_mapping(given)), 1.0
     if isinstance(given, Modes):
         return given, 1.0
     raise InputError(
-        "modes", f"must be a frictionmap.Modes, Beam or Plate, or a mapping; got {checks.one_line(given)}"
+        "modes",
+        f"must be a frictionmap.Modes, Beam or Plate, a file or a mapping; got {checks.one_line(given)}",
     )
+
+
+def _check_keys(given: Mapping[Any, Any], valid: tuple[str, ...]) -> None:
+    for key in given:
+        if key not in valid:
+            name = f"modes.{key}"
+            raise InputError(f"unknown key {name!r}{checks.nearest(key, valid)}; valid: {', '.join(valid)}")
+    if given.get("normalised") not in (None, "mass"):
+        raise InputError("modes.normalised", f"must be 'mass'; got {checks.one_line(given['normalised'])}")
+
+
+def _from_file(given: Mapping[Any, Any]) -> Modes:
+    """Modes of a file, some of its points, or with shapes that are declared to be of unit modal mass."""
+    _check_keys(given, _OF_FILES)
+    file, points = given["file"], given.get("points")
+    if not isinstance(file, str | os.PathLike):
+        raise InputError("modes.file", f"must be the path of a file; got {checks.one_line(file)}")
+    if points is not None and (isinstance(points, str) or not isinstance(points, Sequence) or not points):
+        raise InputError("modes.points", f"must be a list of names; got {checks.one_line(points)}")
+    return read_modes(Path(file), points, given.get("normalised") == "mass")
 
 
 def _from_mapping(given: Mapping[Any, Any]) -> Modes:
     """Modes of a table of a configuration."""
-    for key in given:
-        if key not in _KEYS:
-            raise InputError(f"unknown key {'modes.' + str(key)!r}{checks.nearest(key, _KEYS)}; valid: "
-                             f"{', '.join(_KEYS)}")  # fmt: skip
+    _check_keys(given, _KEYS)
     for key in ("frequencies", "shapes"):
         if key not in given:
             raise InputError("modes", f"must have {key}; got {', '.join(map(str, given)) or 'nothing'}")
@@ -118,8 +144,6 @@ def normalised_shapes(given: Mapping[Any, Any]) -> Any:
         Neither modal masses are given, nor that they are 1.
     """
     masses, words = given.get("modal_masses"), given.get("normalised")
-    if words not in (None, "mass"):
-        raise InputError("modes.normalised", f"must be 'mass'; got {checks.one_line(words)}")
     if masses is None:
         if words is None:
             raise InputError(

@@ -16,6 +16,7 @@ craig_bampton   reduction to a few degrees of freedom
 accuracy        error of a reduction
 reduction       reduction, checked against the allowed error
 modes           modes at named points, checked
+mode_files      modes from NPZ, MAT, CSV and universal files
 beam            bending of uniform beams: modes, compliance
 plate           bending of rectangular plates: modes, compliance
 uniform         beams and plates with their dimensions

@@ -38,7 +38,7 @@ def boundaries(
         Ratios of static to kinetic friction [-], >= 1, increasing; default: 1.
     units : Units, optional
         Reference values that convert ratios to Hz and N, as in `sweep`; r may then be frequencies.
-    wall_speed, beta : array_like, shapes (n_v,), (n_beta,)
+    wall_speed, beta : array_like, shape (n_v,) and (n_beta,)
         In the place of r, without a load: belt speeds and friction, as in `sweep`.
 
     Returns

@@ -22,8 +22,8 @@ HERE = Path(__file__).resolve().parent
 #: The public names, grouped by purpose; a name in none of these groups is added to the last one.
 _GROUPS: Mapping[str, tuple[str, ...]] = {
     "Systems and settings": (
-        "System", "Contact", "FrictionLaw", "NormalForce", "Spring", "PeriodicLoad", "Solver", "Units",
-        "load_config",
+        "System", "Contact", "FrictionLaw", "NormalForce", "Spring", "PeriodicLoad", "Modes", "Beam", "Plate",
+        "Solver", "Units", "load_config",
     ),
     "Maps, curves, motions": (
         "sweep", "boundaries", "borders", "curves", "response", "continuous_motion", "shares",
@@ -32,7 +32,7 @@ _GROUPS: Mapping[str, tuple[str, ...]] = {
     "Pictures": (
         "plot_regimes", "plot_quantity", "plot_boundaries", "plot_curves", "plot_response", "plot_orbit",
         "plot_history", "plot_energies", "plot_spectrum", "plot_incremental", "plot_fit", "plot_shares",
-        "plot_forces", "plot_design", "animate", "explore",
+        "plot_forces", "plot_design", "plot_modes", "animate", "explore",
     ),
     "Errors, and others": ("InputError", "NoSteadyState"),
 }  # fmt: skip

@@ -24,6 +24,7 @@ from .pictures.maps.force_map import plot_forces
 from .pictures.maps.quantity_map import plot_quantity, quantities_of
 from .pictures.maps.regime_map import plot_regimes
 from .pictures.maps.share_map import plot_shares
+from .pictures.mode_shapes import plot_modes
 from .pictures.motions.animation import animate
 from .pictures.motions.belt_cycle import plot_belt_motion
 from .pictures.motions.history import plot_response
@@ -53,6 +54,7 @@ __all__ = [
     "plot_forces",
     "plot_history",
     "plot_incremental",
+    "plot_modes",
     "plot_orbit",
     "plot_quantity",
     "plot_regimes",

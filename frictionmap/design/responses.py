@@ -63,10 +63,7 @@ def checked_response(system: System, quantity: object, mass: object, contact: ob
             f"{quantity!r} with several contacts, springs, belts or loads of several "
             f"harmonics: it is not computed; use one of {', '.join(offered)}",
         )
-    number = checks.whole(mass, "mass", least=1, most=int(system.dofs.numbers[-1]))
-    if number not in system.dofs.numbers:
-        kept = ", ".join(str(kept) for kept in system.dofs.numbers)
-        raise InputError("mass", f"must be one of {kept}; got {number}")
+    number = system.dofs.number(mass, "mass")
     most = system.contact_system.count
     return Response(quantity, number, checks.whole(contact, "contact", least=1, most=most))
 

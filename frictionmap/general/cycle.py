@@ -120,7 +120,7 @@ def phase_values(steps: Steps) -> dict[str, np.ndarray]:
         place, step = tau[largest], tau[1]
         for _ in range(_REFINED):
             around = place + 1e-4 * step * np.array([-1.0, 0.0, 1.0])
-            v = steps.displacements(around, 1)[i]
+            v = steps.displacements(around, 1, i)
             bend = (v[2] - v[0]) / (around[2] - around[0])
             if bend == 0.0:
                 break

@@ -52,14 +52,16 @@ class ModalSystem(NamedTuple):
     viscous: np.ndarray  # C1
     points: PointRows | None = None  # of a structure given by modes
 
-    def displacements(self, q: np.ndarray, loads: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    def displacements(
+        self, q: np.ndarray, loads: np.ndarray, forces: np.ndarray, row: int | slice = slice(None)
+    ) -> np.ndarray:
         """Displacements of the masses, or points, from those of modes (m, k), channels (D, k), and forces
-        (N, k).
+        (N, k); of one row or all.
         """
         if self.points is None:
-            return np.asarray(self.phi @ q)
-        rows = self.points
-        return np.asarray(rows.shapes @ q + rows.loads @ loads + rows.forces @ forces)
+            return np.asarray(self.phi[row] @ q)
+        shapes, by_loads, by_forces = (one[row] for one in self.points)
+        return np.asarray(shapes @ q + by_loads @ loads + by_forces @ forces)
 
 
 def general_of(system: System) -> ContactSystem:

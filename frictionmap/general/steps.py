@@ -93,10 +93,10 @@ class Steps:
         k, x = self.places(tau)
         return self.values(self.series[k, self.rows(name)], x[:, np.newaxis], order).T
 
-    def displacements(self, tau: np.ndarray, order: int = 0) -> np.ndarray:
-        """Displacements of the masses, or points, as of `at`."""
+    def displacements(self, tau: np.ndarray, order: int = 0, row: int | slice = slice(None)) -> np.ndarray:
+        """Displacements of the masses, or points, as of `at`; of one row or all."""
         q, loads, forces = (self.at(name, tau, order) for name in "qLf")
-        return self.modal.displacements(q, loads, forces)
+        return self.modal.displacements(q, loads, forces, row)
 
     def displacement_harmonics(self, highest: int) -> np.ndarray:
         """Harmonics of the displacements of the masses, or points, as of `harmonics`."""

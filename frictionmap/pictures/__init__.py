@@ -16,6 +16,7 @@ panels       figures, panels, axes, legends
 second_axes  axes in hertz, newtons, millimetres in addition to ratios
 shapes       datasets in the form that pictures require
 features     natural frequencies and other features of a system on the frequency axis
+mode_shapes  modes of beams, plates and structures given by modes
 maps         regimes, boundaries and probabilities over frequency and friction
 curves       response curves over frequency
 motions      one steady state: in time, as phase portrait, as friction loop

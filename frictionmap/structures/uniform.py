@@ -175,6 +175,10 @@ class Beam:
         """Elastic modes at the points, of unit modal mass, (points, modes)."""
         return beam.shapes(self.kinds, self._roots, self._x) / math.sqrt(self.mass)
 
+    def shapes_at(self, x: np.ndarray) -> np.ndarray:
+        """Elastic modes at distances x (k,) from the left end, of unit modal mass, (k, modes)."""
+        return beam.shapes(self.kinds, self._roots, np.asarray(x) / self.length) / math.sqrt(self.mass)
+
     @property
     def rigid_shapes(self) -> np.ndarray:
         """Rigid-body modes at the points, of unit modal mass, (points, 0 to 2)."""
@@ -351,6 +355,12 @@ class Plate:
     def _unit_shapes(self) -> np.ndarray:
         """Modes at the points, of unit mass over a^2, (points, rigid-body and elastic modes)."""
         return self.solution.shapes(self._place, self.solution.rigid + self.modes)
+
+    def shapes_at(self, places: np.ndarray) -> np.ndarray:
+        """Elastic modes at places (k, 2), of unit modal mass, (k, modes)."""
+        first = self.solution.rigid
+        found = self.solution.shapes(np.asarray(places) / self.size[0], first + self.modes)[:, first:]
+        return np.asarray(found / (self.size[0] * math.sqrt(self.mass_per_area)))
 
     @property
     def shapes(self) -> np.ndarray:

@@ -398,3 +398,43 @@ def test_compliance_in_the_place_of_the_residual():
     whole = beam.residual + (beam.shapes / beam.frequencies**2) @ beam.shapes.T
     found = fm.Modes(beam.frequencies, 0.0, beam.shapes, list(beam.points), compliance=whole)
     np.testing.assert_allclose(found.residual, beam.residual, atol=1e-16)
+
+
+def two_masses_and_nodes(tiny):
+    """M and K of two masses and two nodes of tiny masses, joined by springs."""
+    stiffness = np.zeros((4, 4))
+    for i, j, k in ((None, 0, 1.0), (0, 1, 1.3), (0, 2, 2.0), (1, 3, 3.0), (2, 3, 0.7)):
+        ends = np.zeros(4)
+        ends[j] = 1.0
+        if i is not None:
+            ends[i] = -1.0
+        stiffness += k * np.outer(ends, ends)
+    return np.diag([1.0, 0.8, tiny, tiny]), stiffness
+
+
+@pytest.mark.parametrize("keys", [
+    {"contact_stiffness": 2.5, "wall_velocity": 0.3},
+    {"contact_stiffness": 2.5, "normal_load": {1: 0.4j}},
+    {"contact": "between-masses", "contact_masses": [3, 4], "contact_stiffness": 1.2},
+], ids=["belt", "normal load", "between"])  # fmt: skip
+def test_nodes_without_mass_are_light_nodes(keys):
+    # a contact and a load at nodes without mass, which only a residual flexibility describes, next to nodes of
+    # a mass of 1e-6; their vibrations are damped with ratios of 0.2 and change the motion by 2 0.2/1000
+    mass, stiffness = two_masses_and_nodes(0.0)
+    node = stiffness[2:, 2:]
+    follow = -np.linalg.solve(node, stiffness[2:, :2])
+    squares, phi = eigh(stiffness[:2, :2] + stiffness[:2, 2:] @ follow, mass[:2, :2])
+    residual = np.zeros((4, 4))
+    residual[2:, 2:] = np.linalg.inv(node)
+    modes = fm.Modes(np.sqrt(squares), 0.03, np.vstack((phi, follow @ phi)), list("abcd"), residual)
+    mass, stiffness = two_masses_and_nodes(1e-6)
+    keys = {"contact_masses": [3], "load_mass": 4, "frequency_scale": math.sqrt(squares[0]), **keys}
+    light = fm.System(matrices={"M": mass, "K": stiffness}, damping_ratios=(0.03, 0.03, 0.2, 0.2), **keys)
+    found, expected = (fm.response(one, r=0.8, beta=0.15) for one in (fm.System(modes=modes, **keys), light))
+    for name in ("peak_to_peak", "contact_peak_to_peak", "sliding_distance", "work_friction", "midpoint"):
+        np.testing.assert_allclose(found[name], expected[name], rtol=4e-4, atol=1e-4)
+    assert float(found.slips_per_cycle) == float(expected.slips_per_cycle)
+    wall = float(found.work_wall) if "work_wall" in found else 0.0
+    assert (
+        abs(found.work_input.item() + wall - found.work_damping.item() - found.work_friction.item()) < 1e-12
+    )

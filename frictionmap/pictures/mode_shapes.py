@@ -1,0 +1,151 @@
+"""Modes of beams, plates and structures given by modes, with their points."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Unpack
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from .. import checks
+from ..errors import InputError
+from ..model.system import System
+from ..structures.modes import Modes
+from ..structures.uniform import Beam, Plate
+from .drawing import with_options
+from .options import FigureOptions, current
+from .palette import LINES
+from .panels import given_axes, grid_of_panels, halo
+from .shapes import check_options
+from .sizes import points
+
+if TYPE_CHECKING:
+    from .panels import AxesArray
+
+#: Places along a beam, and along each side of a plate.
+_PLACES, _ACROSS = 401, 81
+
+#: Modes that are drawn at most.
+_MOST = 24
+
+
+def _structure_of(given: object) -> Beam | Plate | Modes:
+    """What is drawn: of a system its modes."""
+    if isinstance(given, System) and isinstance(given.matrices, Modes):
+        return given.matrices
+    if isinstance(given, Beam | Plate | Modes):
+        return given
+    raise InputError(
+        "structure",
+        f"must be a frictionmap.Beam, Plate or Modes, or a system given by one; got {checks.one_line(given)}",
+    )
+
+
+def _draw_beam(ax: Axes, beam: Beam, k: int) -> None:
+    """Draw a mode over the place on a beam."""
+    x = np.linspace(0.0, beam.length, _PLACES)
+    ax.axhline(0.0, color="0.6", linewidth=0.8)
+    ax.plot(x, beam.shapes_at(x)[:, k], color=LINES[0], linewidth=1.4)
+    for (name, place), value in zip(beam.points.items(), beam.shapes[:, k], strict=True):
+        ax.plot(place, value, "o", color=LINES[4], markersize=4.0)
+        _name_point(ax, name, place, value)
+    ax.set_xlabel("place on the beam")
+    ax.set_ylabel("shape")
+
+
+def _draw_plate(ax: Axes, plate: Plate, k: int) -> None:
+    """Draw a mode of a plate as colours, with its nodal lines."""
+    x, y = (np.linspace(0.0, side, _ACROSS) for side in plate.size)
+    places = np.stack(np.meshgrid(x, y), axis=-1)
+    values = plate.shapes_at(places.reshape(-1, 2))[:, k].reshape(_ACROSS, _ACROSS)
+    most = float(np.abs(values).max())
+    ax.pcolormesh(x, y, values, cmap="RdBu_r", vmin=-most, vmax=most, shading="gouraud", rasterized=True)
+    # edges at rest are no nodal lines: there the signs are those of rounding errors
+    left, right, front, back = (int(kind != "free") for kind in plate.kinds)
+    inside = slice(front, _ACROSS - back), slice(left, _ACROSS - right)
+    if values[inside].min() < 0.0 < values[inside].max():
+        ax.contour(x[inside[1]], y[inside[0]], values[inside], levels=[0.0], colors="black", linewidths=0.8)
+    for name, (px, py) in plate.points.items():
+        ax.plot(px, py, "o", color="black", markersize=4.0, clip_on=False)
+        _name_point(ax, name, px, py, below=True)
+    ax.set_aspect("equal")
+    ax.set_xlabel("$x$")
+    ax.set_ylabel("$y$")
+
+
+def _draw_points(ax: Axes, modes: Modes, k: int) -> None:
+    """Draw a mode at points, side by side."""
+    place = np.arange(len(modes.points))
+    values = modes.shapes[:, modes.rigid_modes + k]
+    ax.axhline(0.0, color="0.6", linewidth=0.8)
+    ax.vlines(place, 0.0, values, color=LINES[0], linewidth=1.4)
+    ax.plot(place, values, "o", color=LINES[4], markersize=4.0)
+    ax.set_xlim(-0.5, len(place) - 0.5)
+    ax.set_xticks(place, modes.points)
+    ax.set_xlabel("point")
+    ax.set_ylabel("shape")
+
+
+def _name_point(ax: Axes, name: str, x: float, y: float, below: bool = False) -> None:
+    """Write the name of a point next to it."""
+    shift = (-4.0, -10.0) if below else (-4.0, 4.0)
+    ax.annotate(
+        name, (x, y), xytext=shift, textcoords="offset points", ha="right",
+        fontsize=points(8.0, "xtick.labelsize"), path_effects=halo(), parse_math=False, annotation_clip=False,
+    )  # fmt: skip
+
+
+@with_options
+def plot_modes(
+    structure: Beam | Plate | Modes | System,
+    ax: "Axes | Sequence[Axes] | AxesArray | None" = None,
+    count: int = 4,
+    **options: Unpack[FigureOptions],
+) -> "AxesArray":
+    """Draw the first elastic modes of a beam, a plate, or of any structure at its points.
+
+    Parameters
+    ----------
+    structure : Beam, Plate, Modes or System
+        Of a system its modes.
+    ax : array of matplotlib axes, optional
+        As many axes as modes to draw into.
+    count : int
+        Number of modes, 1 to 24; fewer where there are fewer.
+
+    Returns
+    -------
+    An array of the axes.
+
+    Raises
+    ------
+    InputError
+        The structure has no modes at points, or the number of axes differs from that of the modes.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> beam = fm.Beam("clamped-free", length=1.0, bending_stiffness=1.0, mass_per_length=1.0,
+    ...                points={"tip": 1.0})
+    >>> len(fm.plot_modes(beam, count=2))
+    2
+    """
+    found = _structure_of(structure)
+    check_options("plot_modes")
+    number = min(checks.whole(count, "count", least=1, most=_MOST), found.frequencies.size)
+    draw = current().chosen(list(range(number)))
+    if ax is None:
+        title = (found.source or "structure") if isinstance(found, Modes) else found.describe()
+        axes = grid_of_panels(len(draw), current().columns(min(len(draw), 2)), 2.6, f"Modes of the {title}")
+    else:
+        axes = given_axes(ax, len(draw), "one for each mode")
+    for one, k in zip(axes, draw, strict=True):
+        if isinstance(found, Beam):
+            _draw_beam(one, found, k)
+        elif isinstance(found, Plate):
+            _draw_plate(one, found, k)
+        else:
+            _draw_points(one, found, k)
+        frequency = found.frequencies[k]
+        words = f"mode {k + 1}, frequency over $2\\pi$ {frequency / (2.0 * np.pi):.5g}"
+        one.set_title(words, fontsize=points(10.0, "axes.titlesize"))
+    return axes

@@ -113,7 +113,8 @@ class Motions:
             record = make_record(problem, masses, 0)
             kept = make_kept(problem, weights, rounding, record, room)
             one = problem._replace(rates=np.ones(1))  # room for the channels of one interval
-            memory = make_memory(one, weights.shape[0], terms.shape[2], lengths)
+            still = problem._replace(belt=np.zeros_like(problem.belt))
+            memory = make_memory(one, still, weights.shape[0], terms.shape[2], lengths)
             status, done, asleep = follow_record(
                 problem, friction, memory, course, start, asked.start.sense, kept, bed, limits
             )

@@ -90,9 +90,9 @@ class Course(NamedTuple):
 
 
 @entry
-def make_memory(problem, watched, terms, lengths):
+def make_memory(problem, still, watched, terms, lengths):
     """Allocate it; see `tables.make_tables`."""
-    tables = make_tables(problem, watched, terms, lengths if has_tables(problem) else 0)
+    tables = make_tables(problem, still, watched, terms, lengths if has_tables(problem) else 0)
     contacts = problem.spring.size
     return Memory(
         make_row(problem), make_motion(problem), tables, np.zeros((BOX_ROWS, contacts)),

@@ -12,7 +12,8 @@ slide, and the terms of the load.  For every set of held contacts the part of ea
 - integrals of the displacements that the load pushes, for its work, and of the forces of held contacts on
   walls that move, for theirs.
 
-Belts change nothing but the velocities watched in contacts that slide, by a constant.
+Where there are belts, the last unit is their motion: it loads springs, and changes the velocities watched in
+contacts that slide.
 
 An interval in which nothing watched can reach its limit, and no quantity its peak so far inside, is passed by
 sums of these parts.  Others are followed by their series.
@@ -29,7 +30,6 @@ from ..compiler.vectors import LANES, filled, load, store
 from ..general.counts import STUCK
 from ..general.crossings import slope_at, value_at
 from ..general.glide import begin_with
-from ..general.laws.contact import has_tables as has_tables_of
 from ..general.laws.kinds import has_force, state_size
 from ..general.laws.speed import has_law
 from ..general.problem import (
@@ -39,6 +39,7 @@ from ..general.problem import (
     F,
     H,
     P,
+    Problem,
     Q,
     first_contact_row,
     force_row,
@@ -87,6 +88,7 @@ class Tables(NamedTuple):
     most: np.ndarray  # (G,)
     unit: np.ndarray  # (N,) friction; scratch
     state: np.ndarray  # (3, ...) a state; scratch
+    still: Problem  # the same without belts
 
 
 @kernel
@@ -99,6 +101,15 @@ def _has_moving_wall(problem, j):
 
 
 @kernel
+def _has_belts(problem):
+    """Whether a wall moves at constant velocity."""
+    moving = False
+    for j in range(problem.belt.size):
+        moving = moving or problem.belt[j] != 0.0
+    return moving
+
+
+@kernel
 def _sizes(problem, watched, terms):
     """(units, rows of parts) of a system that watches this number of quantities."""
     contacts, channels = problem.spring.size, problem.push.shape[1]
@@ -107,13 +118,14 @@ def _sizes(problem, watched, terms):
         if _has_moving_wall(problem, j):
             moments += 1
     units = state_size(problem) + contacts + channels * terms
-    return units, state_size(problem) + 4 * contacts + watched + moments * (terms - 1)
+    return units + _has_belts(problem), state_size(problem) + 4 * contacts + watched + moments * (terms - 1)
 
 
 @entry
-def make_tables(problem, watched, terms, lengths):
+def make_tables(problem, still, watched, terms, lengths):
     """Allocate them.
 
+    problem, still : Problem with and without its belts
     watched : number of quantities with kept peaks
     terms : of the load in an interval, >= 2
     lengths : number of distinct lengths of intervals; 0: no tables
@@ -129,16 +141,16 @@ def make_tables(problem, watched, terms, lengths):
         np.zeros((sets * units, 3, watched)), np.zeros(sets, np.int64),
         np.zeros(lengths), np.zeros(1, np.int64),
         np.zeros(units), np.zeros(width), np.zeros(bounds), np.zeros(contacts),
-        np.zeros((3, padded(max(modes, contacts)))),
+        np.zeros((3, padded(max(modes, contacts)))), still,
     )  # fmt: skip
 
 
 @kernel
 def has_tables(problem):
-    """Whether tables hold: no belts behind springs, constant normal loads, no friction over speed."""
+    """Whether tables hold: constant normal loads, no friction over speed."""
     possible = not has_law(problem)
     for j in range(problem.spring.size):
-        possible = possible and has_tables_of(problem, j) and not varies(problem, j)
+        possible = possible and not varies(problem, j)
     return possible
 
 
@@ -169,7 +181,7 @@ def _begin_with(problem, row, motion, unit, q):
     """Set one unit to 1 and all others to zero; see `Tables`."""
     begin_with(problem, motion, unit, q)
     at, terms = q - state_size(problem) - problem.spring.size, row.intervals[LOAD_TERMS]
-    if at >= 0:
+    if 0 <= at < problem.push.shape[1] * terms:
         motion.series[problem.push.shape[0] + at // terms, at % terms] = 1.0
 
 
@@ -184,7 +196,6 @@ def _fill_unit(problem, row, motion, kept, tables, at):
         source = first_contact_row(problem) + 2 * contacts + j
         if motion.sense[j] != 0:
             source -= contacts
-            series[source, 0] += row.numbers[H] * problem.belt[j]
         slope = 0.0
         for k in range(1, TERMS):
             slope += k * series[source, k]
@@ -254,7 +265,10 @@ def _fill_set(problem, row, motion, kept, tables, slot):
             tables.state[part, i] = motion.state[part, i]
     for q in range(count):
         _begin_with(problem, row, motion, unit, q)
-        expand(problem, row, unit, 0.0, -1, motion, True)
+        if q == count - 1 and _has_belts(problem):
+            expand(problem, row, unit, 0.0, -1, motion, True)
+        else:
+            expand(tables.still, row, unit, 0.0, -1, motion, True)
         _fill_unit(problem, row, motion, kept, tables, slot * count + q)
     for part in range(3):
         for i in range(motion.state.shape[1]):
@@ -293,6 +307,8 @@ def _put_units(problem, row, friction, motion, units):
     for d in range(channels):
         for k in range(terms):
             units[size + contacts + d * terms + k] = row.loads[d, k]
+    if units.size > size + contacts + channels * terms:
+        units[units.size - 1] = 1.0
 
 
 @inner_kernel
@@ -313,17 +329,17 @@ def _add_up(tables, slot):
 
 
 @inner_kernel
-def _stays(friction, motion, tables, first, j, belt):
-    """Whether what is watched in contact j stays inside its limits; belt : its way in the interval."""
+def _stays(friction, motion, tables, first, j):
+    """Whether what is watched in contact j stays inside its limits."""
     sums = tables.sums
     low, high = math.inf, -math.inf
     for i in range(4):
         low, high = min(low, sums[first + 4 * j + i]), max(high, sums[first + 4 * j + i])
     bound = tables.most[j]
     if motion.sense[j] > 0:
-        return low - belt > bound
+        return low > bound
     if motion.sense[j] < 0:
-        return high - belt < -bound
+        return high < -bound
     limit = friction.static[j] - bound
     return low > -limit and high < limit
 
@@ -363,7 +379,7 @@ def pass_by_tables(problem, row, friction, motion, counts, kept, tables):
     _add_up(tables, slot)
     size = state_size(problem)
     for j in range(contacts):
-        if not _stays(friction, motion, tables, size, j, row.numbers[H] * problem.belt[j]):
+        if not _stays(friction, motion, tables, size, j):
             return False
     first = size + 4 * contacts
     for i in range(kept.weights.shape[0]):

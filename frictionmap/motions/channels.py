@@ -110,13 +110,6 @@ def _normal_loads(general: ContactSystem, time: float) -> list[Channel]:
                     f"must leave 1 + its value >= 0, as contacts that separate are another model; "
                     f"got {least:.3g} at its least",
                 )
-            open_ = (pieces.terms == np.eye(1, pieces.terms.shape[1])[0] * -1.0).all(axis=1)
-            if group.stiffness is not None and open_.any():
-                raise InputError(
-                    f"contacts[{j + 1}].normal_record",
-                    f"must leave 1 + its value > 0 with stiffness except for single instants, as a spring in a "
-                    f"contact without load has no force; got 0 from {record.times[np.argmax(open_)]:g} on",
-                )
             n = group.vector.size
             found.append(Channel(pieces, np.zeros(n), np.zeros(general.count), np.eye(general.count)[j]))
     return found
@@ -129,6 +122,21 @@ def _common(channels: list[Channel]) -> tuple[np.ndarray, np.ndarray]:
         return first.times, first.steps
     times = np.unique(np.concatenate([one.pieces.times for one in channels]))
     return times, np.diff(times)
+
+
+def _goes_on(one: Channel, end: float) -> Pieces:
+    """The pieces of a channel up to a common end: a base that another record outlasts keeps its place."""
+    pieces = one.pieces
+    rest = end - pieces.times[-1]
+    if rest <= 0.0 or not (one.base.any() or one.moves_on):
+        return pieces
+    last = np.zeros((1, pieces.terms.shape[1]))
+    last[0, 0] = pieces.ends[-1]
+    if one.moves_on and one.base.any():
+        last[0, 1] = pieces.terms[-1] @ np.arange(last.size) / pieces.steps[-1] * rest
+    return Pieces(
+        np.append(pieces.times, end), np.append(pieces.steps, rest), np.vstack((pieces.terms, last))
+    )
 
 
 def drive_of(system: System, record: Record, scale: Scale) -> Drive:
@@ -145,7 +153,9 @@ def drive_of(system: System, record: Record, scale: Scale) -> Drive:
     channels += normal
     times, steps = _common(channels)
     terms = [
-        one.pieces.terms if one.pieces.times is times else on_times(one.pieces, times, steps).terms
+        one.pieces.terms
+        if one.pieces.times is times
+        else on_times(_goes_on(one, times[-1]), times, steps).terms
         for one in channels
     ]
     most = max(own.shape[1] for own in terms)

@@ -144,15 +144,62 @@ def test_from_beta_hold_on_nothing_moves_under_varying_normal_loads(how, stiffne
     assert events[1] > 0
 
 
-def test_a_load_that_is_off_for_a_while_needs_a_rigid_contact():
-    off = fm.Record([0.0, -1.0, -1.0, 0.0], 1.0, quantity="force")
-    with pytest.raises(
-        fm.InputError, match=r"contacts\[1\].normal_record must leave 1 \+ its value > 0 with"
-    ):
-        fm.history(fm.System(contacts=[fm.Contact(stiffness=1.0, normal_record=off)]), _RECORD, beta=0.1)
-    ds = fm.history(fm.System(contacts=[fm.Contact(normal_record=off)]), _RECORD, beta=0.1)
+@pytest.mark.parametrize("quantity", ["acceleration", "displacement"])
+def test_a_base_keeps_its_place_while_the_normal_load_lasts(quantity):
+    """As with samples of no acceleration, or of the last place, up to the end of the normal load."""
+    lasts = fm.Record(np.concatenate((_NORMAL, _NORMAL)), _STEP, quantity="force")
+    system = fm.System(
+        damping_ratios=0.02, excitation="base", damping_reference="base",
+        contacts=[fm.Contact("fixed-wall", normal_record=lasts)],
+    )  # fmt: skip
+    more = np.zeros(240) if quantity == "acceleration" else np.full(240, _VALUES[-1])
+    ends = [_VALUES, np.concatenate((_VALUES, more))]
+    if quantity == "acceleration":
+        assert _VALUES[-1] == 0.0
+    one, two = (
+        fm.history(system, fm.Record(values, _STEP, quantity=quantity), beta=0.1, after=0.0, beta_hold=False)
+        for values in ends
+    )
+    assert one.end_time.item() == pytest.approx(two.end_time.item(), rel=1e-14)
+    atol = 1e-12 if quantity == "acceleration" else 2e-3
+    assert one.events.item() > 10
+    for name in ("z_max", "z_min", "work_friction", "amplitude"):
+        size = np.abs(two[name].values).max()
+        np.testing.assert_allclose(one[name].values, two[name].values, rtol=0.0, atol=atol * size)
+
+
+_OFF = np.where(np.arange(240) % 40 < 15, -1.0, _NORMAL)
+
+
+@pytest.mark.parametrize("belt", [0.0, 0.05])
+@pytest.mark.parametrize("how", ["linear", "hold"])
+def test_a_contact_without_load_is_open(how, belt):
+    """Its slider follows it without a force, and the contact closes with a spring that is not stretched."""
+    stiffness, beta, zeta = 2.0, 0.3, 0.02
+    contact = fm.Contact(stiffness=stiffness, normal_record=_normal(_OFF, how), wall_speed=belt)
+    ds = fm.history(fm.System(contacts=[contact], damping_ratios=zeta), _RECORD, beta=beta, after=0.0)
+    wanted = _stepped(stiffness, beta, zeta, _at(_OFF, how), ds.end_time.item(), belt)
     assert ds.status.item() == 0
-    assert np.isinf(ds.beta_hold.item())
+    assert ds.amplitude.item() == pytest.approx(wanted["amplitude"], rel=1e-3)
+    assert ds.x.values[..., -1].item() == pytest.approx(wanted["last"], abs=1e-3 * wanted["amplitude"])
+    for name in ("sliding_distance", "work_friction", "work_damping"):
+        assert ds[name].item() == pytest.approx(wanted[name], rel=3e-3), name
+    assert ds.turns.item() >= 4
+    f, t = ds.friction.values.ravel(), ds.time.values / _STEP
+    inside = (t % 40.0 > 0.5) & (t % 40.0 < 13.5) & (t < 239.0)
+    assert inside.sum() > 60
+    assert not f[inside].any()
+
+
+def test_an_open_contact_at_rest_stays_there():
+    off = fm.Record([-1.0, -1.0, 0.0], 1.0, quantity="force")
+    late = fm.Record([0.0, 0.0, 0.0, 0.5, 0.0], 0.75, quantity="force")
+    contact = fm.Contact(stiffness=1.0, normal_record=off)
+    ds = fm.history(fm.System(contacts=[contact]), late, beta=0.1)
+    assert ds.status.item() == 0
+    assert ds.first_motion.item() > 1.5
+    rigid = fm.history(fm.System(contacts=[fm.Contact(normal_record=off)]), _RECORD, beta=0.1)
+    assert np.isinf(rigid.beta_hold.item())
     touched = fm.Record([0.0, -1.0, 0.0], 1.0, quantity="force")
-    contact = fm.Contact(stiffness=1.0, normal_record=touched)
-    assert fm.history(fm.System(contacts=[contact]), _RECORD, beta=0.1).status.item() == 0
+    once = fm.Contact(stiffness=1.0, normal_record=touched)
+    assert fm.history(fm.System(contacts=[once]), _RECORD, beta=0.1).status.item() == 0

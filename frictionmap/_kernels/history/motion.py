@@ -37,7 +37,7 @@ from ..general.series import advance, expand, factor_held
 from .asleep import is_asleep
 from .held import Places, keep_places, make_places, note_places
 from .kept import begin_step, keep_ends, keep_present, keep_step, list_changes, store_state
-from .springs import begin_springs, has_varying_spring
+from .springs import begin_springs, follow_open, has_varying_spring, turn_open
 from .tables import Tables, has_tables, make_tables, pass_by_tables, set_tables
 
 #: What became of a motion.
@@ -176,11 +176,14 @@ def _cross(problem, friction, memory, kept, jumped, listed):
     x = 0.0
     motion.clock[0] = math.nan
     before = motion.scratch[_SENSE]
-    show = listed and jumped
+    show, opens = listed and jumped, has_varying_spring(problem)
     for _ in range(_MOST_EVENTS):
         rest = 1.0 - x
         expand(problem, row, friction, x * h, 0 if x == 0.0 else -1, motion, True)
         _skip_zeros(problem, motion)
+        if opens:
+            follow_open(problem, row, motion, before)
+            list_changes(row, motion, before, x, kept)
         if show:
             keep_present(problem, row, motion, x, 0.0, kept)
         event = _next_event(problem, row, friction, motion, rest)
@@ -205,6 +208,8 @@ def _cross(problem, friction, memory, kept, jumped, listed):
         if not pass_event(problem, row, friction, x * h, motion, memory.box, counts, event, False):
             return UNDETERMINED
         set_channels(problem, row, x * h, -1, motion)
+        if opens:
+            turn_open(problem, row, motion, before)
         stop_exactly(problem, row, motion)  # the rounding error of what `settle` took away
         note_places(problem, row, motion, before, x, kept.clock[0] + x * h, memory.places)
         list_changes(row, motion, before, x, kept)

@@ -2,20 +2,24 @@
 
 There the normal load may jump, and its slope.  A slider has no mass: where the limit falls below the force of
 its spring it slips at once until the force is at the limit, and the spring does this work.  Where the limit
-rises from the force of a slider that slips, or rises faster than the force, the slider stops.
+rises from the force of a slider that slips, or rises faster than the force, the slider stops.  A contact
+without load for a whole interval is open: its slider follows it without a force, and turns with it.
 """
 
 import math
 
 from ..compiler import kernel
 from ..general.laws.kinds import has_force
-from ..general.problem import LOAD_TERMS, F, slide_velocity, varies
+from ..general.problem import LOAD_TERMS, F, slide_velocity, varies, velocity_row
 from ..general.record import OF_FRICTION
 from ..general.row import set_channels
 from .kept import LARGEST, PRESENT, list_changes
 
 #: Share of the terms of a normal load that is rounding error of their sum.
 _SAME = 1e-13
+
+#: Leading terms of a velocity that may be zero at most.
+_MOST_ZEROS = 7
 
 #: A speed of a slider within this share of its terms is rest.
 _AT_REST = 1e-12
@@ -79,6 +83,20 @@ def _slip_at_once(problem, row, friction, motion, kept):
 
 
 @kernel
+def _is_open(problem, row, j):
+    """Whether a contact with a spring is without load throughout the interval."""
+    nu = 1.0
+    for d in range(problem.normal.shape[1]):
+        share = problem.normal[j, d]
+        if share != 0.0:
+            nu += share * row.loads[d, 0]
+            for k in range(1, row.intervals[LOAD_TERMS]):
+                if row.loads[d, k] != 0.0:
+                    return False
+    return nu == 0.0 and has_force(problem, j)
+
+
+@kernel
 def _bend(problem, row, friction, motion):
     """Stop sliders whose limits rise faster than their forces, or turn them at a limit of 0."""
     for j in range(motion.sense.size):
@@ -93,6 +111,33 @@ def _bend(problem, row, friction, motion):
         elif motion.sense[j] != 0 and motion.sense[j] * w - lag < -_AT_REST * (abs(w) + abs(lag)):
             motion.fresh[j] = motion.sense[j]
             motion.sense[j] = 0
+        motion.idle[j] = motion.sense[j] == 0 and _is_open(problem, row, j)
+
+
+@kernel
+def turn_open(problem, row, motion, before):
+    """Let sliders of open contacts turn where they would stop, and rest where they rested before an event."""
+    for j in range(motion.sense.size):
+        if motion.sense[j] == 0 and _is_open(problem, row, j):
+            motion.sense[j] = -int(before[j])
+            motion.idle[j] = before[j] == 0
+            motion.fresh[j] = 0 if motion.idle[j] else 1
+
+
+@kernel
+def follow_open(problem, row, motion, before):
+    """Let sliders of open contacts move as these do in the present step; `before` takes their senses."""
+    for j in range(motion.sense.size):
+        before[j] = motion.sense[j]
+        if not _is_open(problem, row, j):
+            continue
+        first, w = motion.fresh[j], velocity_row(problem, j)
+        while first < _MOST_ZEROS and motion.series[w, first] == 0.0:
+            first += 1
+        rests = first == _MOST_ZEROS
+        motion.sense[j] = 0 if rests else (1 if motion.series[w, first] > 0.0 else -1)
+        motion.fresh[j] = 0 if rests else first
+        motion.idle[j] = rests
 
 
 @kernel

@@ -7,7 +7,7 @@ import numpy as np
 from .._kernels.general.problem import Problem
 from ..errors import InputError
 from ..general.problem import ModalSystem, fastest, law_of, modal_system, refuse_loop, springs, ties
-from ..model.general import in_general_form, refuse_modes, refuse_phases
+from ..model.general import ContactSystem, in_general_form, refuse_modes, refuse_phases
 from ..model.system import System
 from .channels import Drive
 
@@ -46,17 +46,26 @@ def structure_of(system: System) -> Structure:
     return Structure(system, modal, spring, fastest(modal, spring))
 
 
+def _belts(general: ContactSystem) -> np.ndarray:
+    """Velocities of the walls; at r = 1 both are over omega_1 P/k_1."""
+    return np.array([group.first.wall_velocity + group.first.wall_speed for group in general.groups])
+
+
+def ties_of(structure: Structure) -> np.ndarray:
+    """The rigid contacts that keep both ends of springs at rest, see `general.problem.ties`."""
+    general = structure.system.contact_system
+    moved = np.array([float(group.base) for group in general.groups])
+    return ties(general.vectors, moved, _belts(general), structure.spring)
+
+
 def problem_of(structure: Structure, drive: Drive) -> Problem:
     """The arrays of a system under the channels of a record."""
     modal, general = structure.modal, structure.system.contact_system
     push = np.ascontiguousarray(modal.phi.T @ drive.push)
     largest = np.abs(drive.terms).sum(axis=2).max(axis=0)
-    moved = np.array([float(group.base) for group in general.groups])
-    # at r = 1 both are over omega_1 P/k_1
-    belt = np.array([group.first.wall_velocity + group.first.wall_speed for group in general.groups])
-    tied = ties(general.vectors, moved, belt, structure.spring)
+    belt = _belts(general)
     # a slider under a varying normal load slips between ends at rest, too: it is watched there
-    tied[drive.normal.any(axis=1)] = False
+    tied = ties_of(structure) & ~drive.normal.any(axis=1)[:, np.newaxis]
     size = float((np.abs(push) @ largest / (modal.squares + 1.0)).max())
     return Problem(
         modal.squares, modal.damping, bool((modal.damping != np.diag(np.diag(modal.damping))).any()),

@@ -148,24 +148,33 @@ def test_from_beta_hold_on_nothing_moves_under_varying_normal_loads(how, stiffne
 def test_a_base_keeps_its_place_while_the_normal_load_lasts(quantity):
     """As with samples of no acceleration, or of the last place, up to the end of the normal load."""
     lasts = fm.Record(np.concatenate((_NORMAL, _NORMAL)), _STEP, quantity="force")
-    system = fm.System(
-        damping_ratios=0.02, excitation="base", damping_reference="base",
-        contacts=[fm.Contact("fixed-wall", normal_record=lasts)],
-    )  # fmt: skip
+    contacts = [fm.Contact("fixed-wall", normal_record=lasts)]
+    system = fm.System(damping_ratios=0.02, excitation="base", damping_reference="base", contacts=contacts)
     more = np.zeros(240) if quantity == "acceleration" else np.full(240, _VALUES[-1])
     ends = [_VALUES, np.concatenate((_VALUES, more))]
     if quantity == "acceleration":
         assert _VALUES[-1] == 0.0
     one, two = (
-        fm.history(system, fm.Record(values, _STEP, quantity=quantity), beta=0.1, after=0.0, beta_hold=False)
+        fm.history(system, fm.Record(values, _STEP, quantity=quantity), beta=0.01, after=0.0)
         for values in ends
     )
     assert one.end_time.item() == pytest.approx(two.end_time.item(), rel=1e-14)
     atol = 1e-12 if quantity == "acceleration" else 2e-3
-    assert one.events.item() > 10
+    assert one.events.item() > 5
     for name in ("z_max", "z_min", "work_friction", "amplitude"):
         size = np.abs(two[name].values).max()
         np.testing.assert_allclose(one[name].values, two[name].values, rtol=0.0, atol=atol * size)
+
+
+def test_a_spring_between_ends_at_rest_rests_at_its_limit():
+    """A rigid contact holds the mass while the limit of the spring beside it falls, sample by sample."""
+    normal = _normal(np.linspace(0.8, -0.9, 240), "hold")
+    contacts = [fm.Contact(stiffness=3.0, normal_record=normal), fm.Contact(ratio=1.5)]
+    ds = fm.history(fm.System(contacts=contacts), _RECORD, beta=0.2, after=0.0)
+    assert ds.status.item() == 0
+    assert ds.events.item() < 600
+    assert abs(ds.work_damping.item()) <= 1e-13
+    assert ds.stuck_fraction.values.ravel()[1] > 0.5
 
 
 _OFF = np.where(np.arange(240) % 40 < 15, -1.0, _NORMAL)

@@ -10,6 +10,7 @@ from ..compiler.packed import packed
 from ..general.counts import COUNT_ROWS
 from ..general.crossings import NONE, value_at
 from ..general.follow import count_time, pass_event, prepare
+from ..general.laws.contact import jumps
 from ..general.laws.coulomb import first_event, reaches, watched_slope
 from ..general.laws.elastic import rest_springs
 from ..general.laws.kinds import has_constraint
@@ -37,7 +38,7 @@ from ..general.series import advance, expand, factor_held
 from .asleep import is_asleep
 from .held import Places, keep_places, make_places, note_places
 from .kept import begin_step, keep_ends, keep_present, keep_step, list_changes, store_state
-from .springs import begin_springs, follow_open, has_varying_spring, turn_open
+from .springs import begin_springs, follow_open, has_varying_spring, rest_tied, turn_open
 from .tables import Tables, has_tables, make_tables, pass_by_tables, set_tables
 
 #: What became of a motion.
@@ -78,6 +79,7 @@ class Memory(NamedTuple):
     box: np.ndarray  # (BOX_ROWS, N) scratch of `settle`
     counts: np.ndarray  # (COUNT_ROWS, N) counters
     places: Places
+    rests: np.ndarray  # (N,) bool: springs under varying normal loads that are at rest, see `springs`
 
 
 class Course(NamedTuple):
@@ -87,6 +89,7 @@ class Course(NamedTuple):
     steps: np.ndarray  # (K,) lengths of the intervals
     times: np.ndarray  # (K,) when they begin
     jumps: np.ndarray  # (K,) bool: whether a channel jumps where the interval begins
+    ties: np.ndarray  # (N, N) bool: `Problem.ties` of springs under varying normal loads
 
 
 @entry
@@ -96,7 +99,7 @@ def make_memory(problem, still, watched, terms, lengths):
     contacts = problem.spring.size
     return Memory(
         make_row(problem), make_motion(problem), tables, np.zeros((BOX_ROWS, contacts)),
-        np.zeros((COUNT_ROWS, contacts)), make_places(problem),
+        np.zeros((COUNT_ROWS, contacts)), make_places(problem), np.zeros(contacts, np.bool_),
     )  # fmt: skip
 
 
@@ -158,12 +161,13 @@ def _skip_zeros(problem, motion):
 
 
 @kernel
-def _cross(problem, friction, memory, kept, jumped, listed):
+def _cross(problem, friction, memory, ties, kept, jumped, listed):
     """Follow the motion by its series through one interval, or an equal part of one.
 
     Parameters
     ----------
     problem, friction, memory, kept : see `follow_record`; the polynomials are in `row.loads`
+    ties : see `Course`
     jumped : whether the load, or what a contact does, has changed at the beginning
     listed : whether the states at events are kept
 
@@ -209,6 +213,8 @@ def _cross(problem, friction, memory, kept, jumped, listed):
             return UNDETERMINED
         set_channels(problem, row, x * h, -1, motion)
         if opens:
+            order = 1 if jumps(problem, friction, event[1], event[2]) else 2
+            rest_tied(problem, row, friction, motion, ties, memory.rests, order)
             turn_open(problem, row, motion, before)
         stop_exactly(problem, row, motion)  # the rounding error of what `settle` took away
         note_places(problem, row, motion, before, x, kept.clock[0] + x * h, memory.places)
@@ -247,7 +253,7 @@ def _set_length(problem, memory, h):
 
 
 @kernel
-def _jump(problem, friction, memory, kept):
+def _jump(problem, friction, memory, ties, kept):
     """Decide the pattern where the load jumps; False if the contacts do not determine their forces."""
     motion = memory.motion
     before = motion.scratch[_SENSE]
@@ -255,6 +261,7 @@ def _jump(problem, friction, memory, kept):
         before[j] = motion.sense[j]
     if not _settle(problem, friction, memory):
         return False
+    rest_tied(problem, memory.row, friction, motion, ties, memory.rests, 1)
     note_places(problem, memory.row, motion, before, 0.0, kept.clock[0], memory.places)
     list_changes(memory.row, motion, before, 0.0, kept)
     return True
@@ -360,14 +367,16 @@ def _follow_interval(problem, friction, memory, course, kept, k, jump, listed):
         row, motion, counts = memory.row, memory.motion, memory.counts
         changed = jumped
         if part == 0 and has_varying_spring(problem):
-            changed |= begin_springs(problem, row, friction, motion, kept, motion.scratch[_SENSE])
-        if jumped and not _jump(problem, friction, memory, kept):
+            changed |= begin_springs(
+                problem, row, friction, motion, kept, motion.scratch[_SENSE], course.ties, memory.rests
+            )
+        if jumped and not _jump(problem, friction, memory, course.ties, kept):
             return UNDETERMINED
         by_tables = not jumped and tables.known.size > 0
         if by_tables and pass_by_tables(problem, row, friction, motion, counts, kept, tables):
             keep_places(problem, row, motion, 1.0, kept.clock[0] + row.numbers[H], memory.places)
             continue
-        code = _cross(problem, friction, memory, kept, changed, listed)
+        code = _cross(problem, friction, memory, course.ties, kept, changed, listed)
         if code != RESOLVED:
             return code
     return RESOLVED

@@ -83,17 +83,62 @@ def _slip_at_once(problem, row, friction, motion, kept):
 
 
 @kernel
+def _is_constant(problem, row, j):
+    """Whether the normal load of a contact is constant in the interval."""
+    constant = True
+    for d in range(problem.normal.shape[1]):
+        for k in range(1, row.intervals[LOAD_TERMS] if problem.normal[j, d] != 0.0 else 1):
+            constant = constant and row.loads[d, k] == 0.0
+    return constant
+
+
+@kernel
 def _is_open(problem, row, j):
     """Whether a contact with a spring is without load throughout the interval."""
     nu = 1.0
     for d in range(problem.normal.shape[1]):
-        share = problem.normal[j, d]
-        if share != 0.0:
-            nu += share * row.loads[d, 0]
-            for k in range(1, row.intervals[LOAD_TERMS]):
-                if row.loads[d, k] != 0.0:
-                    return False
-    return nu == 0.0 and has_force(problem, j)
+        nu += problem.normal[j, d] * row.loads[d, 0]
+    return nu == 0.0 and has_force(problem, j) and _is_constant(problem, row, j)
+
+
+@kernel
+def _rests(problem, row, motion, ties, j):
+    """Whether nothing moves in a spring: its limit is constant, and its ends are held."""
+    tied = False
+    for i in range(motion.sense.size):
+        if ties[j, i]:
+            tied = True
+            if motion.sense[i] != 0:
+                return False
+    return tied and _is_constant(problem, row, j)
+
+
+@kernel
+def rest_tied(problem, row, friction, motion, ties, rests, order):
+    """Bring springs to rest between ends at rest under constant limits; see `elastic.rest_springs`.
+
+    Parameters
+    ----------
+    problem, row, friction, motion, ties : see `motion.follow_record`
+    rests : (N,) bool: whether they are at rest
+    order : as of `rest_springs`; 0 where an interval begins, at which limits begin to change
+    """
+    for j in range(motion.sense.size):
+        if not (has_force(problem, j) and varies(problem, j)):
+            continue
+        rested, rests[j] = rests[j], _rests(problem, row, motion, ties, j)
+        limit, _, error = _limit(problem, row, friction, j)
+        if rests[j]:
+            if motion.sense[j] != 0:
+                motion.state[F, j] = motion.sense[j] * limit
+            motion.sense[j] = motion.fresh[j] = 0
+            motion.idle[j] = True
+        elif rested:
+            motion.idle[j] = False
+            if order > 0 and abs(motion.state[F, j]) >= limit - error:
+                sign = 1 if motion.state[F, j] > 0.0 else -1
+                motion.state[F, j] = sign * limit
+                motion.fresh[j] = sign * (1 + order)
 
 
 @kernel
@@ -141,13 +186,14 @@ def follow_open(problem, row, motion, before):
 
 
 @kernel
-def begin_springs(problem, row, friction, motion, kept, before):
+def begin_springs(problem, row, friction, motion, kept, before, ties, rests):
     """Decide what springs under varying normal loads do where an interval begins.
 
     Parameters
     ----------
     problem, row, friction, motion, kept : see `motion.follow_record`; the polynomials are in `row.loads`
     before : (N,) scratch
+    ties, rests : see `rest_tied`
 
     Returns
     -------
@@ -164,5 +210,6 @@ def begin_springs(problem, row, friction, motion, kept, before):
         else:
             _slip_at_once(problem, row, friction, motion, kept)
             _bend(problem, row, friction, motion)
+            rest_tied(problem, row, friction, motion, ties, rests, 0)
         list_changes(row, motion, before, 0.0, kept)
     return kept.counts[0] > listed

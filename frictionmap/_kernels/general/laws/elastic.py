@@ -8,7 +8,7 @@ from ....regimes import ONE_WAY_SLIDING, STICK_SLIP
 from ...compiler import kernel
 from ..counts import FIRST_SENSE, LAST_SENSE, REVERSALS, SLIPS, STUCK
 from ..crossings import value_at
-from ..problem import F, R, normal_row
+from ..problem import F, R, normal_row, varies
 from .coulomb import comes_to_rest
 from .kinds import has_force
 
@@ -94,6 +94,8 @@ def rest_springs(problem, friction, motion, order):
         of a force, else 2
     """
     for j in range(motion.sense.size):
+        if varies(problem, j):  # its slider slips between ends at rest, too
+            continue
         rests = _ends_rest(problem, motion, j)
         limit = friction.kinetic[j]
         if rests and motion.sense[j] != 0:

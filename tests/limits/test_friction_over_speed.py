@@ -5,6 +5,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import frictionmap as fm
+from frictionmap._kernels.general.counts import CROSSINGS, STOPS
+from frictionmap._kernels.general.series import Friction
+from frictionmap.general.boundaries import friction_lines
+from frictionmap.general.problem import problem_of
+from frictionmap.general.recorded import recorded_state
 
 FALLING = {"speed": [0.0, 0.5], "factor": [1.0, 0.7], "slope": 0.1}
 STRIBECK = {"speed": [0.0, 0.2, 0.6], "factor": [1.0, 0.75, 0.8], "slope": 0.15}
@@ -265,6 +270,34 @@ def test_reference_motions(reference_table):
         assert np.atleast_1d(cell.work_friction) * period == pytest.approx(row["work"], abs=1e-10)
         assert np.atleast_1d(cell.stuck_fraction) == pytest.approx(row["stuck_fraction"], abs=1e-7)
         assert float(cell.multiplier) == pytest.approx(row["multiplier"], abs=1e-10)
+
+
+def from_state(system, r, x, rate, tau):
+    """The steady state that the motion from a state at a phase reaches: extremes, period, counters."""
+    problem, modal = problem_of(system.at_frequency(r), np.array([r]), 1.0)
+    kinetic, static = friction_lines(system, np.array([1.0]))
+    start = np.zeros((3, x.size))
+    start[0], start[1], start[2] = modal.phi.T @ modal.mass @ x, modal.phi.T @ modal.mass @ rate, tau
+    found = recorded_state(
+        problem, 0, Friction(kinetic.sum(axis=1), static[0].sum(axis=1)), start, (2000, 1e-12), modal.phi
+    )
+    return found.record.ranges[:, kinetic.shape[0] :], found.found.halves // 2, found.counts
+
+
+@pytest.mark.reference
+def test_reference_motions_from_other_starts(reference_table):
+    """Of several steady states the listed one is that of the motion from the listed start."""
+    rows = [row for row in reference_table("laws.json")["A"] if row.get("note") == SEVERAL]
+    assert len(rows) >= 4
+    for row in rows:
+        begin = row["start"]
+        ranges, period, counts = from_state(
+            reference_system(row), row["r"], np.array(begin["x"]), np.array(begin["dx_dtau"]), begin["tau"]
+        )
+        assert period == row["period"]
+        assert ranges.ravel() == pytest.approx((*row["x_min"], *row["x_max"]), abs=1e-10)
+        assert counts[STOPS].tolist() == row["stops"]
+        assert counts[CROSSINGS].tolist() == row["break_point_crossings"]
 
 
 def slopes_of(system):

@@ -26,8 +26,8 @@ _MOST_RETURNS = 64
 _FASTEST = 1e-3
 
 #: A multiplier above this is not that of a motion that attracts.
-_STABLE = 1.0 + 1e-9
-_STABLE_PRECISION = 0.01
+STABLE = 1.0 + 1e-9
+STABLE_PRECISION = 0.01
 
 
 @kernel
@@ -44,7 +44,7 @@ def _heads_for(problem, row, halves, contraction, memory, ring):
     contraction : largest modulus of its multipliers over these
     memory, ring : Return, Ring
     """
-    if contraction > _STABLE:
+    if contraction > STABLE:
         return False
     far = distance_from_last(row, memory, ring) / motion_size(problem, row, memory)
     if contraction < 1.0:
@@ -127,7 +127,7 @@ def try_return(problem, friction, halves, tolerance, workspace):
     ring, base = workspace.ring, base_halves(problem)
     status, cycles = find_rest(problem, friction, halves, tolerance, workspace)
     if status == REPEATS:
-        contraction = largest_multiplier(problem, row, halves, _STABLE_PRECISION, motion, memory)
+        contraction = largest_multiplier(problem, row, halves, STABLE_PRECISION, motion, memory)
         if _heads_for(problem, row, halves, contraction, memory, ring):
             approaches, more = _approaches(problem, friction, halves, contraction, workspace)
             cycles += more

@@ -259,6 +259,30 @@ def find_held(problem, friction, halves, tolerance, workspace):
 
 
 @kernel
+def find_crept(problem, friction, tolerance, workspace):
+    """Find the steady state of a motion in which contacts slide in one direction, with these held; see
+    `find_rest`.
+
+    Parameters
+    ----------
+    problem, friction, tolerance : see `find_rest`
+    workspace : Workspace; the motion is that of the last state in its ring
+    """
+    row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+    kept = workspace.ring.friction
+    go_back(memory, workspace.ring, 0)
+    code = go_round(problem, row, friction, 2, motion, memory, record, False)
+    _keep(friction, kept)
+    status, cycles = NO_REPEAT, 1.0
+    if code == FOLLOWED and _hold(problem, row, friction, 0.0, memory, kept) > 0:
+        status, more = _settle(problem, friction, 2, tolerance, workspace)
+        cycles += more
+    if status != REPEATS:
+        restore_friction(friction, kept)
+    return status, cycles
+
+
+@kernel
 def end_creep(problem, friction, memory, record, ring):
     """Move the contacts that crept, and were held, to where that ends: their forces just reach their limits.
 

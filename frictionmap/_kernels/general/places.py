@@ -367,7 +367,8 @@ def _is_settled(problem, friction, difference, safety, places):
         limit = friction.static[j]
         high, low = _sides(problem, friction, places, j)
         excess, reach = max(high, low), places.gains[j] * difference
-        if excess + safety * reach <= _ROUNDING * limit or reach <= _PRECISE * limit:
+        # one that is overloaded by more slides on, by its inertia beyond the place where it no longer is
+        if excess + safety * reach <= _ROUNDING * limit or max(excess, reach) <= _PRECISE * limit:
             continue
         if excess > 0.0 and places.creep[_SLOWLY, j] != 0.0:
             creeping += 1

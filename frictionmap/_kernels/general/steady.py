@@ -12,7 +12,7 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..compiler.packed import packed
 from ..long_periods import WINDOW, enough_cycles, first_search, next_search
-from .approach import try_return
+from .approach import STABLE, STABLE_PRECISION, try_return
 from .course import (
     Course,
     begin_course,
@@ -23,7 +23,7 @@ from .course import (
     window_is_stationary,
     window_stops,
 )
-from .creep import end_creep, find_held, find_rest, keep_friction, restore_friction
+from .creep import end_creep, find_crept, find_held, find_rest, keep_friction, restore_friction
 from .follow import FOLLOWED
 from .laws.speed import has_law, is_certified, rate_under
 from .orbits import (
@@ -84,6 +84,10 @@ _MOST_MEASURED = 10
 
 #: Attempts of Newton's method after which contacts that creep are held.
 _CREEPS = 6
+
+#: Periods within which it is known, where the start matters, that contacts creep to where they rest, or not:
+#: a few times those by which that is told, see `places`.
+_CREEP_CYCLES = 64.0
 
 
 class Workspace(NamedTuple):
@@ -164,6 +168,36 @@ def _averages(followed, at_last, memory, record, course):
 
 
 @kernel
+def _creep_to_rest(problem, friction, tolerance, workspace):
+    """Find the steady state that a motion goes to, ever more slowly, in which some contacts creep.
+
+    With these held it has a steady state that attracts.  The motion must go to a place of rest in it.
+
+    Returns
+    -------
+    (status, cycles) : REPEATS, with a friction without limit of the contacts at rest, or NO_REPEAT, with the
+        motion as before; periods followed
+    """
+    row, motion, memory = workspace.row, workspace.motion, workspace.memory
+    places, ring = workspace.places, workspace.ring
+    status, cycles = find_crept(problem, friction, tolerance, workspace)
+    if status == REPEATS:
+        contraction = largest_multiplier(problem, row, 2, STABLE_PRECISION, motion, memory)
+        find_rests(memory, places)
+        restore_friction(friction, ring.friction)
+        fill_flexibility(problem, places)
+        if contraction <= STABLE and keep_orbit(problem, friction, 2, workspace):
+            go_back(memory, ring, 0)
+            known, more = settle_places(problem, friction, 2, _CREEP_CYCLES, workspace)
+            cycles += more
+            if known:
+                return REPEATS, cycles
+        restore_friction(friction, ring.friction)
+    go_back(memory, ring, 0)
+    return NO_REPEAT, cycles
+
+
+@kernel
 def _find_from_start(problem, friction, cycles, tolerance, workspace):
     """Find the steady state where it depends on the start; see `find`.
 
@@ -193,6 +227,11 @@ def _find_from_start(problem, friction, cycles, tolerance, workspace):
                 return Steady(REPEATS, found.halves, spent + 0.5 * halves)
             pause += 1
             wait = pause
+        if due and not is_free(problem):
+            status, more = _creep_to_rest(problem, friction, tolerance, workspace)
+            spent += more
+            if status == REPEATS:
+                return Steady(REPEATS, 2, spent + 0.5 * halves)
         if due and 0.5 * halves >= enough:
             averaged = _averages(halves // 2, 0.5 * halves >= 2.0 * enough, memory, record, course)
             if averaged > 0:
@@ -446,13 +485,11 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
     keep_friction(friction, workspace.places.limits)
     found = _locate(problem, friction, cycles, tolerance, workspace, by_tables)
     if found.status == REPEATS and settled:
-        restore_friction(friction, workspace.places.limits)
         copy_motion(memory.start, memory.senses, workspace.ring.orbit, workspace.ring.orbit_senses)
         if not unique:  # the last way was not over the whole period
             go_round(problem, row, friction, found.halves, workspace.motion, memory, record, False)
-        if has_law(problem) and not unique:  # the motion from the start brought contacts to their places
-            pass
-        elif find_rests(memory, workspace.places) > 0 and not is_free(problem):
+        restore_friction(friction, workspace.places.limits)
+        if find_rests(memory, workspace.places) > 0 and not is_free(problem):
             found = _settle(problem, friction, state, found, cycles, tolerance, workspace)
         elif unique:
             if by_tables:

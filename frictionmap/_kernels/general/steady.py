@@ -86,7 +86,7 @@ _MOST_MEASURED = 10
 _CREEPS = 6
 
 #: Periods within which it is known, where the start matters, that contacts creep to where they rest, or not:
-#: a few times those by which that is told, see `places`.
+#: a few times those that decide it, see `places`.
 _CREEP_CYCLES = 64.0
 
 

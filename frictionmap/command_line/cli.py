@@ -464,7 +464,12 @@ def _spectrum(options: Options) -> None:
     task, what = load_spectrum(options.config, options.overrides), "spectra of {:,} motions"
     if not in_store:
         _follow_records(options, task, what.format(task.motions))
-    elif task.asked is not None:
+    elif task.asked is None:
+        raise InputError(
+            f"cannot write spectra along [axes] into {options.output}: a store is of one damping ratio; use "
+            "-o with a name that ends in .nc"
+        )
+    else:
         spectra = spectra_of(task.asked(), task.wanted, task.text)
         store = _fill_store(options, spectra, task.title, what.format(spectra.cells))
         if not options.quiet:

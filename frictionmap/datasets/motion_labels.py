@@ -3,6 +3,7 @@
 import re
 
 import numpy as np
+import xarray as xr
 
 from .. import regimes
 from .labels import Label
@@ -230,3 +231,8 @@ SI_LABELS = {
 def motion_labels() -> dict[str, Label]:
     """Labels of all variables and axes."""
     return {**MOTIONS, **SI_LABELS}
+
+
+def axes_of_motions(ds: xr.Dataset) -> list[str]:
+    """Further axes of motions or spectra: dimensions before those of every motion."""
+    return [str(dim) for dim in ds["status"].dims if dim not in (*CELL, "period")] if "status" in ds else []

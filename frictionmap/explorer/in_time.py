@@ -69,6 +69,8 @@ def check(motions: Motions) -> None:
     InputError
         A reference value of the units is missing, or friction is none.
     """
+    if "axes" in motions.arguments:
+        raise InputError("cannot open a page of motions with [axes]: it shows one system; remove [axes]")
     scales = motion_scales(motions.units, motions.system)
     for record in motions.records:
         scale_of(record, scales)

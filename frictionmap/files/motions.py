@@ -1,6 +1,6 @@
 """Standard form, tables and summaries of motions in time."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from ..datasets.motion_labels import (
     NOT_COMPUTED,
     OF_CONTACTS,
     STATUSES,
+    axes_of_motions,
     motion_labels,
     si_name,
 )
@@ -46,12 +47,12 @@ def motions_form(ds: xr.Dataset) -> xr.Dataset:
         A value is invalid; the message names the variable.
     """
     ds = ds.expand_dims([dim for dim in (*CELL, "dof", "period") if dim in ds.coords and dim not in ds.dims])
-    variables = {}
+    variables, further = {}, axes_of_motions(ds)
     for name in motion_labels():
         if name not in ds.variables:
             continue
         dims = tuple(dim for dim in _dims(name, ds[name].variable) if dim in ds[name].dims)
-        extra = [dim for dim in ds[name].dims if dim not in (*dims, "period")]
+        extra = [dim for dim in ds[name].dims if dim not in (*dims, "period", *further)]
         if extra:
             raise InputError(f"{name} must have the dimensions {', '.join(dims)}; got also {extra[0]}")
         values = ds[name].variable.transpose(..., *dims)
@@ -59,6 +60,7 @@ def motions_form(ds: xr.Dataset) -> xr.Dataset:
         attrs = ds[name].attrs or attributes(label)
         variables[name] = xr.Variable(values.dims, checked_values(name, values.values, "history"), attrs)
     coords = {name: variables.pop(name) for name in (*ds.coords, *_BESIDE) if name in variables}
+    coords |= {name: one.variable for name, one in ds.coords.items() if one.dims and one.dims[0] in further}
     return xr.Dataset(variables, coords, ds.attrs)
 
 
@@ -66,11 +68,12 @@ def describe_motions(ds: xr.Dataset) -> list[str]:
     """Describe motions: one in a few lines, several in one line each, a spectrum by ranges."""
     if "period" in ds.dims:
         return list(_ranges(ds))
-    cells = list(np.ndindex(*(ds.sizes[dim] for dim in CELL)))
-    motions = [ds.isel(dict(zip(CELL, cell, strict=True))) for cell in cells[:_MOST_LINES]]
+    dims = (*axes_of_motions(ds), *CELL)
+    cells = list(np.ndindex(*(ds.sizes[dim] for dim in dims)))
+    motions = [ds.isel(dict(zip(dims, cell, strict=True))) for cell in cells[:_MOST_LINES]]
     if len(cells) == 1:
         return [f"{name:<{_WIDTH}} {text}" for name, text in (*rows_of_motion(motions[0]), *_remarks(ds))]
-    lines = [f"{_heading(one):<{_WIDTH}} {_summary(one)}" for one in motions]
+    lines = [f"{_heading(one, dims[: -len(CELL)]):<{_WIDTH}} {_summary(one)}" for one in motions]
     if len(cells) > _MOST_LINES:
         lines.append(f"... and {len(cells) - _MOST_LINES} further motions")
     return [*lines, *(f"{name}: {text}" for name, text in _remarks(ds))]
@@ -85,9 +88,10 @@ def _remarks(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
         yield "remark", str(ds.attrs["remark"])
 
 
-def _heading(one: xr.Dataset) -> str:
-    """The record, its factor, and the friction of one of several motions."""
+def _heading(one: xr.Dataset, further: Sequence[str]) -> str:
+    """The record, its factor, the friction and the place on further axes of one of several motions."""
     words = [str(one["record_name"].values)]
+    words += [f"{name} {float(one[name]):.4g}" for name in further]
     for name, unusual in (("scale", 1.0), ("mu", 1.0)):
         if float(one[name]) != unusual:
             words.append(f"{name} {float(one[name]):g}")
@@ -180,12 +184,12 @@ def _averages(one: xr.Dataset, name: str, words: str) -> Iterator[tuple[str, str
 
 def table_of(ds: xr.Dataset) -> Any:
     """Data frame: of one motion a row for every time, of several, and of spectra, a row for every motion."""
-    single = all(ds.sizes.get(dim, 1) == 1 for dim in CELL)
+    single = all(ds.sizes.get(dim, 1) == 1 for dim in (*CELL, *axes_of_motions(ds)))
     if single and "time" in ds.dims:
         one = ds.squeeze([dim for dim in CELL if dim in ds.dims], drop=True)
         names = [name for name in one.data_vars if "time" in one[name].dims]
     else:
-        axes = {*CELL, "period", "dof", "contact"}
+        axes = {*CELL, "period", "dof", "contact", *axes_of_motions(ds)}
         one, names = ds, [name for name in ds.data_vars if not set(ds[name].dims) - axes]
     columns = {}
     for name in names:
@@ -193,4 +197,6 @@ def table_of(ds: xr.Dataset) -> Any:
         for k in range(one.sizes[parts[0]]) if parts else (None,):
             own = one[name] if k is None else one[name].isel({parts[0]: k}, drop=True)
             columns[str(name) if k is None else f"{name}_{k + 1}"] = own
-    return xr.Dataset(columns).to_dataframe()
+    wide = xr.Dataset(columns)
+    further = [dim for dim in axes_of_motions(ds) if dim in wide.dims]
+    return wide.to_dataframe(dim_order=[*further, *(dim for dim in wide.dims if dim not in further)])

@@ -8,6 +8,7 @@ import xarray as xr
 
 from .. import checks
 from ..datasets.labels import COORDINATES, labels_of
+from ..datasets.motion_labels import axes_of_motions
 from ..datasets.provenance import configuration
 from ..datasets.schema import is_own, kind
 from ..errors import InputError
@@ -44,6 +45,8 @@ def parse_choices(texts: Sequence[str]) -> dict[str, float]:
 
 def further_axes(ds: xr.Dataset) -> list[str]:
     """Dimensions of known variables beyond those of their labels; none for estimates and designs."""
+    if kind(ds) in ("history", "spectrum"):
+        return axes_of_motions(ds)
     if is_own(kind(ds)):
         return []
     labels = labels_of(kind(ds))
@@ -94,6 +97,8 @@ def choose(
     rows: dict[str, list[int]] = {}
     left = {over, "contact"} if contacts and "contact" not in places else {over}
     chosen = [dim for dim in further if dim not in left]
+    if is_own(kind(ds)):  # read whole, except for what is chosen
+        chosen = [dim for dim in further if dim in places]
     for dim in (*chosen, *(dim for dim in places if dim not in further)):
         found = places.get(dim, np.arange(ds.sizes[dim]))
         if found.size != 1:

@@ -11,13 +11,24 @@ import xarray as xr
 
 from .. import checks
 from ..errors import InputError
-from ..files.config import checked_table, common_tables, names_of_tables, read_tree, unknown_key, within
+from ..files.config import (
+    checked_table,
+    common_tables,
+    further_axes,
+    names_of_tables,
+    read_tree,
+    unknown_key,
+    within,
+)
+from ..files.variants import put_variants
 from ..jobs import Progress
 from ..model.system import System
+from ..model.variations import checked_variations
 from ..units.quantities import quantities
-from ..units.scales import Units
+from ..units.scales import NO_SCALES, Units
 from .bounds import interpolation_bounds
 from .dataset import history
+from .further_axes import spectra_along
 from .record import Record
 from .scaling import motion_scales
 from .spectra import VARIABLES, Asked, at_once, checked_spectra
@@ -50,6 +61,8 @@ class Motions:
             )
         except InputError as error:
             where = error.where.partition("[")[0].partition(".")[0]
+            if where == "axes":
+                raise
             table = "record" if where in _OF_MOTIONS else "history"
             given = where in (*_OF_MOTIONS, *self.arguments)
             if where == "beta":
@@ -111,10 +124,14 @@ def load_history(path: str | Path, overrides: Sequence[str] = ()) -> Task:
         See `load_motions`.
     """
     found = load_motions(path, overrides)
+    axes = found.arguments.get("axes")
     count = len(found.records) * _count(*(found.arguments.get(name) for name in ("scale", "beta", "mu")))
+    count *= 1 if axes is None else checked_variations(found.system, axes).count
 
     def ask(**options: Any) -> xr.Dataset:
         ds = found.follow(**options)
+        if axes is not None:
+            return ds
         return ds.assign_attrs(_interpolation_bound(ds, found.system, found.records, found.units))
 
     return Task(found.title, found.name, found.text, found.files, count, ask)
@@ -130,6 +147,7 @@ def load_motions(path: str | Path, overrides: Sequence[str] = ()) -> Motions:
     """
     path = Path(path)
     tree, text = read_tree(path, overrides)
+    varied = put_variants(tree.get("axes"), path.parent)
     common = common_tables(tree, path)
     records, files = _records(tree, path)
     given, record = dict(checked_table(tree, "history")), checked_table(tree, "record")
@@ -140,6 +158,9 @@ def load_motions(path: str | Path, overrides: Sequence[str] = ()) -> Motions:
         given["start"] = str(path.parent / start)
         files = (*files, path.parent / start)
     arguments |= given
+    axes = further_axes(tree, motion_scales(common.units, common.system))
+    arguments |= {} if axes is None else {"axes": axes}
+    files = (*files, *varied)
     return Motions(
         common.title,
         path.stem,
@@ -185,9 +206,12 @@ def load_spectrum(path: str | Path, overrides: Sequence[str] = ()) -> Task:
     given |= _system_values(tree, path, given)
     wanted = _names(given.pop("quantities", None))
     asked = partial(_spectra, records, given)
+    axes = further_axes(tree, NO_SCALES)
     count = len(records) * _count(*(given.get(name) for name in ("scale", "mu", "period", "friction")))
+    count *= _count(*(axes or {}).values())
     return Task(
-        title, path.stem, text, (path, *files), count, partial(_chosen, asked, wanted), asked, wanted,
+        title, path.stem, text, (path, *files), count, partial(_chosen, asked, wanted, axes),
+        None if axes else asked, wanted,
     )  # fmt: skip
 
 
@@ -201,10 +225,13 @@ def _names(wanted: Sequence[str] | None) -> tuple[str, ...] | None:
 
 
 def _chosen(
-    asked: Callable[[], Asked], wanted: tuple[str, ...] | None, threads: int | None = None,
-    progress: Progress | None = None,
+    asked: Callable[..., Asked], wanted: tuple[str, ...] | None, axes: Mapping[str, Any] | None,
+    threads: int | None = None, progress: Progress | None = None,
 ) -> xr.Dataset:  # fmt: skip
-    ds = at_once(asked(), threads, progress)
+    def at_point(progress: Progress | None = None, **point: Any) -> xr.Dataset:
+        return at_once(asked(**point), threads, progress)
+
+    ds = at_point(progress) if axes is None else spectra_along(axes, at_point, progress)
     return ds if wanted is None else ds[list(wanted)]
 
 
@@ -273,9 +300,12 @@ def _periods(given: Any) -> Any:
     return found
 
 
-def _spectra(records: tuple[Record, ...], given: Mapping[str, Any]) -> Asked:
-    """The oscillators that a configuration describes; errors name keys of the tables."""
-    arguments = dict(given)
+def _spectra(records: tuple[Record, ...], given: Mapping[str, Any], **point: Any) -> Asked:
+    """The oscillators that a configuration describes; errors name keys of the tables.
+
+    point : numbers in the place of others
+    """
+    arguments = {**given, **point}
     period, friction = arguments.pop("period"), arguments.pop("friction")
     try:
         return checked_spectra(records, period, friction, **arguments)

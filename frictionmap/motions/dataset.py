@@ -16,11 +16,13 @@ from ..errors import InputError
 from ..general.dataset import refuse_static
 from ..jobs import Progress, Watch, run_counted
 from ..model.system import System
-from ..units.scales import Scales, Units
+from ..model.variations import checked_variations
+from ..units.scales import Scales, Units, scales_of
 from ..version import __version__
 from .averages import asked_averages, averages_of, describe_averages
 from .cells import Asked, Found, Motions
 from .channels import drive_of
+from .further_axes import axis_coordinates, part_of_progress, stacked
 from .holding import largest_forces
 from .origins import record_attributes
 from .record import Record, checked_records
@@ -103,6 +105,7 @@ def history(
     samples: str | int = "all",
     beta_hold: bool = True,
     statistics: Mapping[str, Any] | None = None,
+    axes: Mapping[str, Any] | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
     watch: Watch | None = None,
@@ -145,6 +148,9 @@ def history(
         `stationary` finds them over the time of the record from the samples that are kept, or from all if
         none are.  A table of `start`, the time that is left out, `window` of the peak and `batches`; times
         are in seconds for records with units.
+    axes : mapping, optional
+        Further axes: values of numbers of the system, as of `sweep`.  The motions of all their systems are
+        in one dataset, which has these dimensions first, and the samples without the sides of events.
     threads : int, optional
         Number of threads; default: all processors.  The result is equal to the bit for any number.
     progress, watch : callable, optional
@@ -153,7 +159,8 @@ def history(
     Returns
     -------
     xarray.Dataset
-        Over (record, scale, mu, beta), and (dof, time), (contact, time), (event): see the manual.
+        Over (record, scale, mu, beta), after the names of `axes`, and (dof, time), (contact, time), (event):
+        see the manual.
 
     Raises
     ------
@@ -171,23 +178,56 @@ def history(
     1
     """
     checks.instance(system, "system", System)
-    scales = motion_scales(units, system)
-    beta = friction_ratios(1.0 if beta is None else beta, "beta", scales)
+    wanted = Wanted(record, beta, mu, scale, units, start, after, samples, beta_hold, statistics)
+    if axes is None:
+        return _motions(system, wanted, False, threads, progress, watch)
+    variations = checked_variations(system, axes)
+    scales_of(units, system, variations)
+    coords, found = axis_coordinates(variations), []
+    for done, point in enumerate(variations.points()):
+        part = part_of_progress(progress, done, variations.count)
+        found.append(_motions(variations.at(point), wanted, True, threads, part, watch))
+    ds = stacked(found, {axis.name: axis.size for axis in variations.axes}).assign_coords(coords)
+    return ds.assign_attrs(title="Motions in time", system=variations.describe())
+
+
+class Wanted(NamedTuple):
+    """Arguments of `history`."""
+
+    record: Any
+    beta: Any
+    mu: Any
+    scale: Any
+    units: Units | None
+    start: Any
+    after: Any
+    samples: Any
+    beta_hold: Any
+    statistics: Any
+
+
+def _motions(
+    system: System, wanted: Wanted, several: bool, threads: int | None, progress: Progress | None,
+    watch: Watch | None,
+) -> xr.Dataset:  # fmt: skip
+    """The motions of one system; several : of one of several, which have common times."""
+    scales = motion_scales(wanted.units, system)
+    beta = friction_ratios(1.0 if wanted.beta is None else wanted.beta, "beta", scales)
     grid = Grid(
-        checked_records(record, "record"),
-        _axis(scale, "scale"),
-        _axis(mu, "mu", least=1.0),
+        checked_records(wanted.record, "record"),
+        _axis(wanted.scale, "scale"),
+        _axis(wanted.mu, "mu", least=1.0),
         _axis(beta, "beta", least=0.0),
     )
     structure = structure_of(system)
     refuse_static(structure.system.contact_system, grid.mu)
-    averages = asked_averages(statistics, grid.records[0].unit)
-    every = _every("all" if averages and samples == "none" else samples, grid)
-    asked = Asked(start_of(structure, start), _after(after), every)
-    single = int(np.prod(grid.shape)) == 1
-    if not isinstance(beta_hold, bool):
-        raise InputError("beta_hold", f"must be true or false; got {checks.one_line(beta_hold)}")
-    holds = beta_hold and not asked.start.moves
+    averages = asked_averages(wanted.statistics, grid.records[0].unit)
+    every = _every("all" if averages and wanted.samples == "none" else wanted.samples, grid)
+    asked = Asked(start_of(structure, wanted.start), _after(wanted.after), every)
+    single = int(np.prod(grid.shape)) == 1 and not several
+    if not isinstance(wanted.beta_hold, bool):
+        raise InputError("beta_hold", f"must be true or false; got {checks.one_line(wanted.beta_hold)}")
+    holds = wanted.beta_hold and not asked.start.moves
     found = _follow(structure, grid, scales, asked, (single, holds), threads, progress, watch)
     variables, coords = _labelled(structure, grid, asked, found)
     attrs = {
@@ -200,7 +240,7 @@ def history(
         factors = [scale_of(one, scales).time for one in grid.records]
         variables |= averages_of(xr.Dataset(variables, coords), averages, grid.records, factors)
         attrs["statistics"] = describe_averages(averages)
-    if samples == "none":
+    if wanted.samples == "none":
         variables = {name: one for name, one in variables.items() if "time" not in one.dims}
         coords.pop("time", None)
     both = in_si(coords | variables, scales)

@@ -1,7 +1,7 @@
 """`spectrum`: friction response spectra in memory, or block by block in a store."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from .. import checks
 from ..errors import InputError
 from ..jobs import Progress, Watch
+from ..motions.further_axes import spectra_along
 from ..motions.record import Record
 from ..motions.spectra import Asked, at_once, checked_spectra, described
 
@@ -25,6 +26,7 @@ def spectrum(
     damping: float = 0.0,
     contact_stiffness: float | None = None,
     scale: ArrayLike = 1.0,
+    axes: Mapping[str, Any] | None = None,
     store: str | Path | None = None,
     overwrite: bool = False,
     threads: int | None = None,
@@ -56,6 +58,9 @@ def spectrum(
         rigid.  `stops` are then ends of slips.  It takes about a hundred times as long.
     scale : array_like
         Factors of the records, increasing.
+    axes : mapping, optional
+        Further axes, whose dimensions come first: values of ``damping_ratios`` or ``contact_stiffness``, in
+        the place of `damping` and `contact_stiffness`.
     store : str or Path, optional
         A store NAME.zarr, into which the spectra are written block by block (needs `frictionmap[zarr]`).  A
         call that was stopped goes on where it was if it is repeated.  Stores may be larger than memory.
@@ -88,15 +93,29 @@ def spectrum(
     >>> float(spectrum(push, float("inf"), 0.3).amplitude.squeeze().round(12))
     4.666666666667
     """
-    wanted = checked_spectra(
-        records, period, friction, mu=mu, damping=damping, contact_stiffness=contact_stiffness, scale=scale
-    )
+    given: dict[str, Any] = {
+        "mu": mu,
+        "damping": damping,
+        "contact_stiffness": contact_stiffness,
+        "scale": scale,
+    }
+
+    def at_point(progress: Progress | None = None, **point: Any) -> xr.Dataset:
+        return at_once(
+            checked_spectra(records, period, friction, **(given | point)), threads, progress, watch
+        )
+
+    if axes is not None and store is not None:
+        raise InputError("cannot use", "axes", "with store: a store is of one damping ratio; omit one")
+    if axes is not None:
+        return spectra_along(axes, at_point, progress)
     if not isinstance(overwrite, bool):
         raise InputError("overwrite", f"must be true or false; got {checks.one_line(overwrite)}")
     if store is None:
-        return at_once(wanted, threads, progress, watch)
+        return at_point(progress)
     if watch is not None:
         raise InputError("cannot use", "watch", "with store: a stopped call is repeated; omit watch")
+    wanted = checked_spectra(records, period, friction, **given)
     return _in_store(wanted, _path(store), overwrite, threads, progress)
 
 

@@ -112,6 +112,74 @@ def test_statistics_are_in_the_file_and_printed(tmp_path, capsys):
     assert "history.statistics.window must fit twice" in capsys.readouterr().err
 
 
+def test_motions_along_further_axes(tmp_path, capsys):
+    """Those of each system, and of a file the one that is chosen."""
+    varied = "[axes]\ndamping_ratios = [0.0, 0.05]\njoint = { file = 'joint.csv' }\n"
+    (tmp_path / "joint.csv").write_text("mass_ratios[2],stiffness_ratios[2]\n1.0,0.5\n2.0,1.0\n0.5,1.0\n")
+    (tmp_path / "frame.toml").write_text(FRAME + varied)
+    assert main(["history", "frame.toml"]) == 0
+    assert "damping_ratios 0.05, joint 0, beta 0.4" in " ".join(capsys.readouterr().out.split())
+    found = fm.open("frame-history.nc")
+    assert found.x.dims == ("damping_ratios", "joint", "record", "scale", "mu", "beta", "dof", "time")
+    np.testing.assert_array_equal(found.mass_ratios_2, [1.0, 2.0, 0.5])
+    pulse = fm.Record.pulse("half-sine", 1.0, 3.0)
+    for k, (mass, spring) in enumerate([(1.0, 0.5), (2.0, 1.0), (0.5, 1.0)]):
+        system = fm.System(
+            mass_ratios=[1, mass], stiffness_ratios=[1, spring], damping_ratios=0.05, excitation="base",
+            damping_reference="base", contacts=[fm.Contact("joined-base-wall", 1)],
+        )  # fmt: skip
+        alone, part = fm.history(system, pulse, beta=[0.2, 0.4]), found.isel(damping_ratios=1, joint=k)
+        for name in alone.data_vars:
+            inside = {dim: slice(alone.sizes[dim]) for dim in ("time", "event") if dim in alone[name].dims}
+            np.testing.assert_array_equal(part[name].isel(inside), alone[name], err_msg=name)
+            beyond = {dim: slice(alone.sizes[dim], None) for dim in inside}
+            rest = part[name].isel(beyond).values
+            assert not inside or (np.isnan(rest).all() if rest.dtype.kind == "f" else (rest <= 0).all())
+    assert main(["plot", "frame-history.nc"]) == 2
+    assert "--at damping_ratios=0.0 --at joint=0 or ds.sel(" in capsys.readouterr().err
+    one = ["--at", "damping_ratios=0.05", "--at", "mass_ratios_2=2.0"]
+    assert main(["plot", "frame-history.nc", *one]) == 0
+    assert main(["export", "frame-history.nc", "-o", "all.csv"]) == 0
+    assert (tmp_path / "all.csv").read_text().startswith("damping_ratios,joint,record,")
+    assert main(["explore", "frame.toml"]) == 2
+    assert "cannot open a page of motions with [axes]" in capsys.readouterr().err
+
+
+def test_spectra_along_further_axes(tmp_path, capsys):
+    pulse = "[record]\npulse = { kind = 'half-sine', amplitude = 1.0, duration = 3.0 }\n"
+    text = (
+        pulse
+        + "[spectrum]\nperiod = [1.0, 4.0]\nfriction = [0.1, 0.2]\n[axes]\ndamping_ratios = [0.0, 0.05]\n"
+    )
+    (tmp_path / "s.toml").write_text(text)
+    assert main(["spectrum", "s.toml"]) == 0
+    found, record = fm.open("s-spectrum.nc"), fm.Record.pulse("half-sine", 1.0, 3.0)
+    for damping in (0.0, 0.05):
+        alone = fm.spectrum(record, [1.0, 4.0], [0.1, 0.2], damping=damping)
+        for name in alone.data_vars:
+            np.testing.assert_array_equal(found[name].sel(damping_ratios=damping), alone[name])
+    assert main(["plot", "s-spectrum.nc", "--at", "damping_ratios=0.05"]) == 0
+    soft = fm.spectrum(record, 4.0, 0.1, axes={"contact_stiffness": [3.0, 30.0]})
+    assert soft.amplitude.dims[0] == "contact_stiffness"
+    capsys.readouterr()
+    refused = {
+        ("-o", "s.zarr"): "cannot write spectra along [axes] into s.zarr",
+        (
+            "-o",
+            "t.nc",
+            "--set",
+            "axes.load_mass=[1, 2]",
+        ): "axes must be one of damping_ratios, contact_stiffness",
+    }
+    for more, said in refused.items():
+        assert main(["spectrum", "s.toml", *more]) == 2
+        assert said in capsys.readouterr().err
+    with pytest.raises(fm.InputError, match="cannot use axes with store"):
+        fm.spectrum(record, 4.0, 0.1, axes={"damping_ratios": [0.1]}, store="s.zarr")
+    with pytest.raises(fm.InputError, match="cannot name a further axis period"):
+        fm.history(fm.System(), record, axes={"period": {"damping_ratios": [0.1, 0.2]}})
+
+
 def test_spectra_of_a_suite():
     few = ["--set", "spectrum.period.num=5"]
     assert main(["spectrum", str(MOTIONS / "spectra.toml"), *FEW, *few]) == 0

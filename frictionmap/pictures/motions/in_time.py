@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ...datasets.motion_labels import CELL, stuck_times
+from ...datasets.motion_labels import CELL, axes_of_motions, stuck_times
 from ...errors import InputError
 from ..drawing import with_options
 from ..options import FigureOptions
@@ -165,6 +165,19 @@ def refuse_several(ds: xr.Dataset, *dims: str) -> None:
             raise InputError(f"ds must have one value of {dim}; got {ds.sizes[dim]}: {choice_of(ds, *dims)}")
 
 
+def of_one_system(ds: xr.Dataset) -> xr.Dataset:
+    """Motions without further axes.
+
+    Raises
+    ------
+    InputError
+        An axis has several values; the message shows how to choose one.
+    """
+    further = axes_of_motions(ds)
+    refuse_several(ds, *further)
+    return ds.isel(dict.fromkeys(further, 0))
+
+
 def _one_motion(ds: xr.Dataset) -> xr.Dataset:
     """The only motion of a dataset; one of several that took longer is padded with NaN after its end."""
     one = ds.squeeze(list(CELL))
@@ -179,6 +192,7 @@ def single_motion(ds: xr.Dataset) -> xr.Dataset:
     InputError
         There are several, or its samples are missing.
     """
+    ds = of_one_system(ds)
     if not _is_single(ds):
         raise InputError(f"cannot move several motions: one is drawn; {choice_of(ds, *CELL)}")
     if "time" not in ds.dims:
@@ -217,7 +231,7 @@ def plot_history(
     InputError
         The dataset is no history or lacks a variable to draw, or the number of axes is wrong.
     """
-    ds = to_draw(ds, "plot_history", "history")
+    ds = of_one_system(to_draw(ds, "plot_history", "history"))
     single = _is_single(ds) and "time" in ds.dims
     if single:
         check_holds(ds, ("x", "friction", "direction", "drive"), "its motion")
@@ -283,7 +297,7 @@ def plot_spectrum(
     InputError
         The dataset is no spectrum, or has more than one mu or scale, or too many values of friction.
     """
-    ds = to_draw(ds, "plot_spectrum", "spectrum")
+    ds = of_one_system(to_draw(ds, "plot_spectrum", "spectrum"))
     name = drawn_peak(ds)
     refuse_several(ds, "mu", "scale")
     beta = ds["beta"].values

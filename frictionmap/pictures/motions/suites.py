@@ -20,6 +20,7 @@ from .in_time import (
     draw_band,
     drawn_peak,
     end_picture,
+    of_one_system,
     one_panel,
     refuse_several,
     unit_of,
@@ -63,7 +64,7 @@ def plot_incremental(
     InputError
         The dataset is no spectrum, or has several scales, or too few values of friction.
     """
-    ds = to_draw(ds, "plot_incremental", "spectrum")
+    ds = of_one_system(to_draw(ds, "plot_incremental", "spectrum"))
     name = drawn_peak(ds)
     refuse_several(ds, "scale", "mu")
     positive = ds["beta"].values[ds["beta"].values > 0.0]
@@ -115,7 +116,7 @@ def plot_energies(
     InputError
         The dataset is no history, or has several mu or scales, or one value of beta.
     """
-    ds = to_draw(ds, "plot_energies", "history")
+    ds = of_one_system(to_draw(ds, "plot_energies", "history"))
     check_holds(ds, ("work_friction", "work_damping", "energy"), "its works")
     refuse_several(ds, "scale", "mu")
     if ds.sizes["beta"] == 1:

@@ -72,6 +72,9 @@ MOTIONS = {
     "direction": Label(np.int8, "direction of the motion in the contact", (*CELL, "time"), SENSES),
     "y": _real(f"displacement of the slider of an elastic contact, {_X}", "time"),
     "drive": _real("the record: a force over P, or the acceleration of the base over omega_1^2 P/k1", "time"),
+    "stored_energy": _size(f"energy of masses and springs, also of the springs in contacts, {_E}", "time"),
+    "lost_friction": _real(f"lost in the contact since the beginning, {_E}", "time"),
+    "lost_damping": _real(f"lost in the damping since the beginning, {_E}", "time"),
     "event_time": _real("time of the event, over 1/omega_1", "event", comment="padded with NaN"),
     "event_contact": Label(
         np.int64, "contact that the event is of, counted from 1; 0: none", (*CELL, "event"), least=0
@@ -165,6 +168,7 @@ OF_CONTACTS = (
     "z", "friction", "direction", "y", "contact_amplitude", "friction_amplitude", "contact_amplitude_time",
     "friction_amplitude_time", "z_max", "z_min", "friction_max", "friction_min", "contact_residual", "stops",
     "slips", "turns", "stuck_fraction", "sliding_distance", "largest_slide", "work_friction",
+    "lost_friction",
 )  # fmt: skip
 
 #: Times: in seconds where the natural frequency is known.
@@ -185,7 +189,8 @@ IN_SI: dict[str, tuple[str, ...]] = {
         "friction", "friction_amplitude", "friction_max", "friction_min", "base_force", "base_force_max",
         "base_force_min", "spring_force", "beta_hold",
     ),
-    "work": ("work_load", "work_friction", "work_damping", "work_walls", "energy"),
+    "work": ("work_load", "work_friction", "work_damping", "work_walls", "energy",
+             "stored_energy", "lost_friction", "lost_damping"),
 }  # fmt: skip
 
 _SQUARED = "squared "

@@ -51,11 +51,13 @@ def motions_form(ds: xr.Dataset) -> xr.Dataset:
     for name in motion_labels():
         if name not in ds.variables:
             continue
-        dims = tuple(dim for dim in _dims(name, ds[name].variable) if dim in ds[name].dims)
-        extra = [dim for dim in ds[name].dims if dim not in (*dims, "period", *further)]
-        if extra:
-            raise InputError(f"{name} must have the dimensions {', '.join(dims)}; got also {extra[0]}")
-        values = ds[name].variable.transpose(..., *dims)
+        own = ds[name].variable
+        dims = tuple(dim for dim in _dims(name, own) if dim in own.dims)
+        extra = [dim for dim in own.dims if dim not in (*dims, "period", *further)]
+        wrong = [dim for dim in extra if own.sizes[dim] > 1]
+        if wrong:
+            raise InputError(f"{name} must have the dimensions {', '.join(dims)}; got also {wrong[0]}")
+        values = own.squeeze(extra).transpose(..., *dims)
         label = motion_labels()[name]
         attrs = ds[name].attrs or attributes(label)
         variables[name] = xr.Variable(values.dims, checked_values(name, values.values, "history"), attrs)

@@ -21,6 +21,7 @@ cells            the motions of a grid of records, scales and friction, on sever
 statistics       medians, quantiles, exceedance over records; means of stationary motions over time
 averages         statistics of stationary motions beside their histories
 holding          the largest forces in contacts that all hold: the friction from which nothing moves
+energies         energies of one motion over time
 further_axes     motions and spectra along further axes in one dataset
 dataset          `history`: motions in time as labelled variables
 bounds           how far motions with other friction, or under another record, can be

@@ -22,6 +22,7 @@ from ..version import __version__
 from .averages import asked_averages, averages_of, describe_averages
 from .cells import Asked, Found, Motions
 from .channels import drive_of
+from .energies import energies_over_time
 from .further_axes import axis_coordinates, part_of_progress, stacked
 from .holding import largest_forces
 from .origins import record_attributes
@@ -229,7 +230,7 @@ def _motions(
         raise InputError("beta_hold", f"must be true or false; got {checks.one_line(wanted.beta_hold)}")
     holds = wanted.beta_hold and not asked.start.moves
     found = _follow(structure, grid, scales, asked, (single, holds), threads, progress, watch)
-    variables, coords = _labelled(structure, grid, asked, found)
+    variables, coords = _labelled(structure, grid, asked, found, single)
     attrs = {
         "Conventions": "CF-1.11", "title": "Motion in time" if single else "Motions in time",
         "source": f"frictionmap {__version__}", "references": REFERENCES, "system": system.describe(),
@@ -376,8 +377,8 @@ def _scalars(structure: Structure, motions: Motions, one: Found, asked: Asked) -
     }  # fmt: skip
 
 
-def _traces(structure: Structure, motions: Motions, one: Found) -> dict[str, np.ndarray]:
-    """Histories of one motion: (..., time)."""
+def _traces(structure: Structure, motions: Motions, one: Found, energies: bool) -> dict[str, np.ndarray]:
+    """Histories of one motion: (..., time); energies : whether there are both sides of all events."""
     m, contacts = structure.modal.chi.shape[1], structure.spring.size
     states = one.kept.states[: one.kept.counts[1]].T
     columns = states[1:]
@@ -387,7 +388,12 @@ def _traces(structure: Structure, motions: Motions, one: Found) -> dict[str, np.
     kt = structure.spring[:, np.newaxis]
     with np.errstate(divide="ignore", invalid="ignore"):
         slider = np.where(kt > 0.0, z - f / kt, np.nan)
-    return {
+    if energies:
+        still = np.where(kt > 0.0, slider, z)
+        found = energies_over_time(structure, motions.problem.squares, motions.problem.belt, states, still)
+    else:
+        found = {}
+    return found | {
         "time": states[0], "x": values[places["x"]], "v": structure.modal.phi @ columns[m : 2 * m],
         "acceleration": values[places["acceleration"]], "z": z, "friction": f,
         "direction": one.kept.senses[: one.kept.counts[1]].T, "y": slider,
@@ -434,9 +440,9 @@ _Variables = dict[str, xr.Variable]
 
 
 def _labelled(
-    structure: Structure, grid: Grid, asked: Asked, followed: Followed
+    structure: Structure, grid: Grid, asked: Asked, followed: Followed, single: bool
 ) -> tuple[_Variables, _Variables]:
-    """Variables and coordinates."""
+    """Variables and coordinates; single : the energies of one motion over time, too."""
     general = structure.system.contact_system
     contacts, elastic = general.count, general.elastic
     cells = list(product(*map(range, grid.shape)))
@@ -450,11 +456,11 @@ def _labelled(
         variables[name] = _variable(name, values.reshape((*grid.shape, *values.shape[1:])), contacts)
     coords = _coordinates(structure, grid)
     if asked.every:
-        traces = [_traces(structure, motions, one) for motions, one in ones]
+        traces = [_traces(structure, motions, one, single) for motions, one in ones]
         longest = max(traces, key=lambda trace: trace["time"].size)
         coords["time"] = xr.Variable("time", longest["time"], attributes(MOTIONS["time"]))
-        for name in ("x", "v", "acceleration", "z", "friction", "direction", "y", "drive"):
-            if name == "y" and not elastic.any():
+        for name in traces[0]:
+            if name == "time" or (name == "y" and not elastic.any()):
                 continue
             fill = 0.0 if name == "direction" else np.nan
             stacked = _stacked([trace[name] for trace in traces], grid.shape, fill)

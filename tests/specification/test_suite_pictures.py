@@ -51,6 +51,35 @@ def test_energies_add_up_to_the_work_of_the_load(suite):
     rendered(axes)
 
 
+@pytest.mark.parametrize("stiffness", [None, 4.0])
+def test_energies_over_time_end_with_the_works(stiffness):
+    """Those of the events exactly, the damping by quadrature; with a base that moves, and a belt."""
+    frame = {"mass_ratios": [1, 2], "stiffness_ratios": [1, 1], "damping_ratios": 0.05}
+    joint = [
+        fm.Contact("joined-base-wall", 1, stiffness=stiffness),
+        fm.Contact("between-masses", [1, 2], 0.5),
+    ]
+    shaken = fm.System(**frame, excitation="base", damping_reference="base", contacts=joint)
+    belt = fm.System(**frame, contacts=[fm.Contact("fixed-wall", 2, wall_speed=0.2, stiffness=stiffness)])
+    for system, share, quantity in ((shaken, 1.0, "acceleration"), (belt, 0.5, "force")):
+        wrong = []
+        for parts in (1, 4):  # the same straight lines
+            time = np.linspace(0.0, RECORDS[0].duration, parts * (RECORDS[0].values.size - 1) + 1)
+            values = share * np.interp(time, RECORDS[0].times, RECORDS[0].values)
+            record = fm.Record(values, time=time, quantity=quantity)
+            ds = fm.history(system, record, beta=0.2, after=5.0).squeeze()
+            put_in = float(ds.work_load + ds.work_walls)
+            assert np.abs(ds.lost_friction[..., -1] - ds.work_friction).max() < 1e-11 * put_in
+            assert abs(ds.stored_energy[-1] - ds.energy) < 1e-11 * put_in
+            assert (np.diff(ds.lost_friction) > -1e-12 * put_in).all()  # nothing comes back
+            wrong.append(abs(float(ds.lost_damping[-1] - ds.work_damping)))
+        assert wrong[1] < wrong[0] / 64.0  # at least the third power of the step
+    (ax,) = axes = fm.plot_energies(ds)
+    np.testing.assert_allclose(ax.lines[0].get_ydata()[-1], put_in, rtol=1e-3)
+    assert words_of(axes) == ["lost in the contacts", "lost in the damping", "stored", "put in"]
+    rendered(axes)
+
+
 def test_energies_need_an_axis_of_friction(suite):
     with pytest.raises(fm.InputError, match="must have several values of beta"):
         fm.plot_energies(suite.isel(beta=[0]))

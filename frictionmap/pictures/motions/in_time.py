@@ -178,7 +178,7 @@ def of_one_system(ds: xr.Dataset) -> xr.Dataset:
     return ds.isel(dict.fromkeys(further, 0))
 
 
-def _one_motion(ds: xr.Dataset) -> xr.Dataset:
+def one_motion(ds: xr.Dataset) -> xr.Dataset:
     """The only motion of a dataset; one of several that took longer is padded with NaN after its end."""
     one = ds.squeeze(list(CELL))
     return one.isel(time=np.isfinite(one["drive"].values))
@@ -200,7 +200,7 @@ def single_motion(ds: xr.Dataset) -> xr.Dataset:
             'cannot move a motion without samples: the dataset has none; follow it with samples="all"'
         )
     check_holds(ds, ("x", "z", "friction", "direction", "drive"), "its motion")
-    one = _one_motion(ds)
+    one = one_motion(ds)
     check_range(one, ("x", "z", "friction", "drive"))
     return one
 
@@ -246,7 +246,7 @@ def plot_history(
         axes = new_figure(*size).subplots(count, 1, sharex=True, squeeze=False).ravel()
     else:
         axes = given_axes(ax, count, "for a history")
-    one = _one_motion(ds) if single else ds
+    one = one_motion(ds) if single else ds
     handles = _draw_traces(axes, one) if single else _draw_peaks(axes[0], ds)
     if ax is None:
         motions = 1 if single else ds.sizes["record"] * ds.sizes["scale"]

@@ -21,8 +21,10 @@ from .in_time import (
     drawn_peak,
     end_picture,
     of_one_system,
+    one_motion,
     one_panel,
     refuse_several,
+    time_words,
     unit_of,
     values_in_si,
     words_of,
@@ -96,15 +98,16 @@ def plot_energies(
     ax: "Axes | None" = None,
     **options: Unpack[FigureOptions],
 ) -> "AxesArray":
-    """Draw where the energy of the load goes, over friction: contacts, damping, and springs at the end.
+    """Draw where the energy of the load goes: contacts, damping, and what is stored.
 
-    The areas are means over the records.  Their sum is the work of the load and of walls that move, and the
-    energy at the beginning.
+    Of several motions over friction, as means over the records, at the end; of one over time.  The areas add
+    up to the work of the load and of walls that move, and the energy at the beginning.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        Result of `history`, at one mu and one scale, with several values of beta.
+        Result of `history`, at one mu and one scale: with several values of beta, or of one motion with its
+        samples.
     ax : axes of matplotlib, optional
 
     Returns
@@ -114,13 +117,18 @@ def plot_energies(
     Raises
     ------
     InputError
-        The dataset is no history, or has several mu or scales, or one value of beta.
+        The dataset is no history, or has several mu or scales, or one value of beta and no samples.
     """
     ds = of_one_system(to_draw(ds, "plot_energies", "history"))
-    check_holds(ds, ("work_friction", "work_damping", "energy"), "its works")
     refuse_several(ds, "scale", "mu")
+    if "lost_friction" in ds:
+        return _over_time(ds, one_panel(ax), ax is None)
+    check_holds(ds, ("work_friction", "work_damping", "energy"), "its works")
     if ds.sizes["beta"] == 1:
-        raise InputError("ds must have several values of beta, over which energies are drawn; got one")
+        raise InputError(
+            "ds must have several values of beta, over which energies are drawn, or be one motion with its "
+            'samples; got one without: follow it with samples="all"'
+        )
     joule = ""
     layers = []
     for name in ("work_friction", "work_damping", "energy"):
@@ -128,15 +136,38 @@ def plot_energies(
         whole = values.reshape(*values.shape[:4], -1).sum(axis=-1)  # of all contacts
         layers.append(whole[:, 0, 0].mean(axis=0))
     axes = one_panel(ax)
-    words = ("lost in the contacts", "lost in the damping", "stored at the end")
-    axes[0].stackplot(ds["beta"].values, layers, colors=LINES[:3], alpha=0.55, linewidth=0.0)
-    axes[0].plot(ds["beta"].values, np.sum(layers, axis=0), color="black", linewidth=1.2)
+    _stack(axes[0], ds["beta"].values, layers, joule)
     axes[0].set_xlabel(r"friction ratio $\beta$")
-    axes[0].set_ylabel(f"energy{joule}")
-    axes[0].margins(x=0.0)
-    axes[0].set_ylim(bottom=0.0)
     if ax is None:
-        handles: list[Handle] = [Patch(color=LINES[k], alpha=0.55, label=one) for k, one in enumerate(words)]
-        handles.append(Line2D([], [], color="black", label="put in"))
+        handles = _entries("stored at the end")
         end_picture(ds, axes, handles, "mean of the records" if ds.sizes["record"] > 1 else "")
     return axes
+
+
+def _over_time(ds: xr.Dataset, axes: "AxesArray", is_new: bool) -> "AxesArray":
+    """Draw the energies of one motion over time."""
+    one, joule, layers = one_motion(ds), "", []
+    for name in ("lost_friction", "lost_damping", "stored_energy"):
+        values, joule = values_in_si(one, name, "J", "J")
+        layers.append(values.reshape(-1, values.shape[-1]).sum(axis=0))  # of all contacts
+    _stack(axes[0], one["time"].values, layers, joule)
+    axes[0].set_xlabel(time_words(one))
+    if is_new:
+        end_picture(ds, axes, _entries("stored"), "")
+    return axes
+
+
+def _stack(ax: Axes, at: np.ndarray, layers: list[np.ndarray], joule: str) -> None:
+    """Draw layers above each other, and their sum."""
+    ax.stackplot(at, layers, colors=LINES[:3], alpha=0.55, linewidth=0.0)
+    ax.plot(at, np.sum(layers, axis=0), color="black", linewidth=1.2)
+    ax.set_ylabel(f"energy{joule}")
+    ax.margins(x=0.0)
+    ax.set_ylim(bottom=0.0)
+
+
+def _entries(stored: str) -> list[Handle]:
+    """Legend of the energies."""
+    words = ("lost in the contacts", "lost in the damping", stored)
+    handles: list[Handle] = [Patch(color=LINES[k], alpha=0.55, label=one) for k, one in enumerate(words)]
+    return [*handles, Line2D([], [], color="black", label="put in")]

@@ -159,7 +159,7 @@ def test_few_samples_and_speeds_of_the_slider_are_warned_of() -> None:
 @pytest.mark.parametrize(
     ("test", "more", "words"),
     [
-        (SINE._replace(truth={**SINE.truth, "parallel_stiffness": 6.0, "mass": 4.0}),
+        (SINE._replace(truth={**SINE.truth, "parallel_stiffness": 6.0, "mass": 4.0}, length=4.0),
          ["parallel_stiffness", "mass"], "identify parallel_stiffness and mass together: not identifiable"),
         (TESTS["triangle"], ["mass"], "cannot identify mass: not identifiable, no sample depends on it"),
         (SINE._replace(length=1.5), [], "the contact slips in 2 branches of the motion, 3 needed"),

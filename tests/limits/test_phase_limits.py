@@ -186,3 +186,28 @@ def test_elastic_contacts_whose_limit_a_rigid_one_keeps_constant():
     assert abs(given - taken) < 1e-12 * given
     limit = 0.14 * np.maximum(0.5 - 3.0 * found["x"][0], 0.0)
     assert (np.abs(found["friction"][1]) <= limit + 1e-12).all()
+
+
+@pytest.mark.parametrize("beta", [3.0, 4.0, 5.0])
+def test_the_place_of_contacts_that_rest_in_the_end(beta):
+    """It is that of the last slip on the way from rest, which the other engine follows, too."""
+    r = 0.62
+    contacts = [
+        fm.Contact("fixed-wall", 1, stiffness=2.0, ratio=0.8), fm.Contact("fixed-wall", 3, stiffness=1.5),
+    ]  # fmt: skip
+    system = fm.System(
+        matrices={"K": STIFFNESS, "M": MASS, "C": DAMPING}, frequency_scale=1.0,
+        load_harmonics={1: 3.0 * LOAD, 2: LOAD.real}, contacts=contacts,
+    )  # fmt: skip
+    outputs = ["peak_to_peak", "midpoint", "slips_per_cycle", "sliding_distance"]
+    wanted = fm.sweep(system, [r], [beta], outputs=outputs).isel(mu=0, r=0, beta=0)
+    pair = [
+        PhaseContact(np.array([1.0, 0.0, 0.0]), stiffness=2.0, ratio=0.8),
+        PhaseContact(np.array([0.0, 0.0, 1.0]), stiffness=1.5),
+    ]
+    loads = {1: 3.0 * LOAD, 2: LOAD.real.astype(complex)}
+    found = cell(structure(contacts=pair, loads=loads), r, beta)
+    assert (found["slips_per_cycle"] == 0.0).any()
+    assert np.abs(wanted.midpoint.values).max() > 1e-3
+    assert np.abs(found["peak_to_peak"] - wanted.peak_to_peak.values).max() < 1e-10
+    assert np.abs(found["midpoint"] - wanted.midpoint.values).max() < 1e-10

@@ -14,13 +14,16 @@ from .follow import FOLLOWED, INSTANT, MOST_IMMEDIATE, follow_time, pass_event, 
 from .orbit import (
     begin_return,
     distance,
+    keep_places,
     put_state,
     remove_rests,
+    rests,
     solve,
     state_size,
     take_state,
 )
 from .pattern import begin_pattern, rest_tied
+from .problem import MOVED, OPEN
 from .record import clear_record
 from .series import begin_terms, factor_held
 from .tangent import begin_tangent
@@ -45,6 +48,9 @@ _REACHED = 20.0
 #: States that differ by less, over the size of the motion, are the same; and parts of a period tried.
 _SAME = 1e-9
 _MOST_PARTS = 8
+
+#: Returns over which contacts that rest in a cycle must not slip on the way there.
+_RETURNS = 40
 
 #: Slowest periods without an event, over which the velocities fall, after which a motion settles.
 _QUIET = 2.0
@@ -190,6 +196,7 @@ def _find_cycle(problem, row, cell, motion, memory, time):
             return -1.0
         last = off
         _put_equations(problem, motion, memory)
+        keep_places(problem, motion, memory, size)
         solve(memory)
         for a in range(size):
             memory.start[a] += memory.right[a]
@@ -234,6 +241,41 @@ def _least_time(problem, row, cell, motion, memory, time):
 
 
 @kernel
+def _keeps_places(problem, row, cell, motion, memory, guess, period):
+    """Whether contacts that rest in the cycle just followed do not slip on the way there; see `steady`.
+
+    Parameters
+    ----------
+    problem, row, cell, motion, memory : Problem, Row, Cell, Motion, Memory
+    guess : state from which the cycle was found
+    period : time of a return
+    """
+    resting = motion.trial[1]
+    any_rests = False
+    for j in range(problem.law.size):
+        resting[j] = 1 if rests(problem, motion, j) else 0
+        any_rests = any_rests or resting[j] != 0
+    if not any_rests:
+        return True
+    orbit, keeps = memory.kept[2], True
+    for a in range(orbit.size):
+        orbit[a], memory.start[a] = memory.start[a], guess[a]
+    for a in range(memory.pattern.size):
+        memory.kept_patterns[2, a] = memory.pattern[a]
+    begin_return(problem, row, cell, motion, memory)
+    for _ in range(_RETURNS):
+        keeps = keeps and follow_time(problem, row, cell, period, motion, False) == FOLLOWED
+    for j in range(problem.law.size):
+        slips = motion.counts[MOVED, j] != 0.0 or motion.counts[OPEN, j] != 0.0
+        keeps = keeps and not (resting[j] != 0 and slips)
+    for a in range(orbit.size):
+        memory.start[a] = orbit[a]
+    for a in range(memory.pattern.size):
+        memory.pattern[a] = memory.kept_patterns[2, a]
+    return keeps
+
+
+@kernel
 def _try_cycle(problem, row, cell, motion, memory, events, back, off):
     """Look for a cycle near the last event; its period and its multiplier, or -1.
 
@@ -263,7 +305,12 @@ def _try_cycle(problem, row, cell, motion, memory, events, back, off):
     if found > _STABLE or not (near or way <= _SAME * state_size(problem, row, memory.start)):
         return -1.0, 0.0
     time = _least_time(problem, row, cell, motion, memory, time)
-    return time, _multiplier(problem, motion, memory) if time > 0.0 else 0.0
+    if time < 0.0:
+        return -1.0, 0.0
+    found = _multiplier(problem, motion, memory)
+    if not _keeps_places(problem, row, cell, motion, memory, guess, period):
+        return -1.0, 0.0
+    return time, found
 
 
 @kernel

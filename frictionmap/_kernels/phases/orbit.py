@@ -27,12 +27,12 @@ _MOST_STEPS = 12
 #: not fall any more: motions have some hundred steps.
 _CONVERGED, _ACCEPTED = 1e-14, 1e-11
 
-#: Pivots below this share of the first one belong to directions in which all states return: the place of a
-#: contact that rests.
+#: Pivots below this share of the first one belong to directions in which all states return.
 _FREE = 1e-10
 
-#: Share of the displacement under the load below which a motion is none.
-_NO_MOTION = 1e-6
+#: Share of the displacement under the load below which a motion is none: its rounding errors are those of the
+#: load's forces, 1e-16 of that displacement in every step.
+_NO_MOTION = 1e-4
 
 
 class Memory(NamedTuple):
@@ -186,6 +186,44 @@ def go_round(problem, row, cell, motion, periods, derive):
 
 
 @kernel
+def rests(problem, motion, j):
+    """Whether friction has held a contact all the time."""
+    counts = motion.counts
+    free = problem.law[j] == SMOOTH or counts[MOVED, j] != 0.0 or counts[OPEN, j] != 0.0
+    return not free and is_held(problem, motion, j)
+
+
+@kernel
+def _put_place(problem, j, left, size):
+    """Fill the derivatives of the place of a contact, or of its slider; return their sum of squares."""
+    modes, place, square = problem.squares.size, problem.place[j], 0.0
+    for a in range(size):
+        left[a] = 0.0
+    for i in range(modes):
+        left[i] = problem.chi[j, i] * (problem.spring[j] if place >= 0 else 1.0)
+    if place >= 0:
+        left[place] = -1.0
+    for a in range(size):
+        square += left[a] * left[a]
+    return square
+
+
+@kernel
+def keep_places(problem, motion, memory, size):
+    """Let Newton's method keep the places of contacts that rest: no motion moves them.
+
+    With the place l, l (I - J) = 0: what is added makes l dy = 0 and changes no other equation.
+    """
+    left = memory.end  # its state is in the equations already
+    for j in range(problem.law.size):
+        if rests(problem, motion, j):
+            square = _put_place(problem, j, left, size)
+            for a in range(size):
+                for b in range(size):
+                    memory.matrix[a, b] += left[a] * left[b] / square
+
+
+@kernel
 def _put_equations(problem, motion, memory):
     """Fill the equations (I - J) dy = phi(y) - y."""
     size = memory.right.size
@@ -229,6 +267,7 @@ def find_orbit(problem, row, cell, motion, memory, periods):
             return False
         last = off
         _put_equations(problem, motion, memory)
+        keep_places(problem, motion, memory, memory.right.size)
         solve(memory)
         for a in range(memory.right.size):
             memory.start[a] += memory.right[a]
@@ -236,34 +275,16 @@ def find_orbit(problem, row, cell, motion, memory, periods):
 
 
 @kernel
-def _rests(problem, motion, j):
-    """Whether friction has held a contact all the time."""
-    counts = motion.counts
-    free = problem.law[j] == SMOOTH or counts[MOVED, j] != 0.0 or counts[OPEN, j] != 0.0
-    return not free and is_held(problem, motion, j)
-
-
-@kernel
 def remove_rests(problem, motion, memory, size):
     """Take the multipliers of the places of contacts that rest from `matrix`.
 
-    A place, or the place of a slider behind a spring, is a left eigenvector of the multiplier 1; a rank-one
-    change takes it to 0 and leaves the others.
+    A place is a left eigenvector of the multiplier 1; a rank-one change takes it to 0 and leaves the others.
     """
-    modes, left = problem.squares.size, memory.right
+    left = memory.right
     for j in range(problem.law.size):
-        if not _rests(problem, motion, j):
+        if not rests(problem, motion, j):
             continue
-        for a in range(size):
-            left[a] = 0.0
-        place = problem.place[j]
-        for i in range(modes):
-            left[i] = problem.chi[j, i] * (problem.spring[j] if place >= 0 else 1.0)
-        square = 0.0
-        if place >= 0:
-            left[place] = -1.0
-        for a in range(size):
-            square += left[a] * left[a]
+        square = _put_place(problem, j, left, size)
         for a in range(size):
             sum_ = 0.0
             for b in range(size):

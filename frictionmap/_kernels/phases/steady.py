@@ -16,11 +16,12 @@ from .orbit import (
     go_round,
     multiplier,
     put_state,
+    rests,
     state_size,
     take_state,
 )
 from .pattern import begin_pattern
-from .problem import put_loads
+from .problem import MOVED, OPEN, put_loads
 from .record import clear_record
 
 #: Distance from an earlier state, over the size of the motion, at which Newton's method is tried, and for
@@ -40,6 +41,10 @@ _REACHED = 20.0
 #: States that differ by less, over the size of the motion, are the same.
 _SAME = 1e-9
 
+#: Returns that a motion is followed over to an orbit in which contacts rest, at most, and distance at which
+#: it is there; a contact that slips ever less, and rests in the end, is this far from its place.
+_MOST_RETURNS, _ARRIVED = 2000, 1e-11
+
 #: Periods over which a motion that does not return is averaged, at most.
 _AVERAGED = 200
 
@@ -55,13 +60,19 @@ class Found(NamedTuple):
 
 
 @kernel
+def _copy_state(state, pattern, into, into_pattern):
+    """Copy a state and its pattern."""
+    for a in range(state.size):
+        into[a] = state[a]
+    for a in range(pattern.size):
+        into_pattern[a] = pattern[a]
+
+
+@kernel
 def _keep(memory):
     """Keep the state at the section."""
     slot = memory.count[0] % LONGEST
-    for a in range(memory.start.size):
-        memory.kept[slot, a] = memory.start[a]
-    for a in range(memory.pattern.size):
-        memory.kept_patterns[slot, a] = memory.pattern[a]
+    _copy_state(memory.start, memory.pattern, memory.kept[slot], memory.kept_patterns[slot])
     memory.count[0] += 1
 
 
@@ -69,10 +80,7 @@ def _keep(memory):
 def _last_state(memory):
     """Go back to the last state kept."""
     slot = (memory.count[0] - 1) % LONGEST
-    for a in range(memory.start.size):
-        memory.start[a] = memory.kept[slot, a]
-    for a in range(memory.pattern.size):
-        memory.pattern[a] = memory.kept_patterns[slot, a]
+    _copy_state(memory.kept[slot], memory.kept_patterns[slot], memory.start, memory.pattern)
 
 
 @kernel
@@ -145,6 +153,54 @@ def _least_period(problem, row, cell, motion, memory, periods):
 
 
 @kernel
+def _mark_rests(problem, motion):
+    """Mark the contacts that rest in the whole orbit; their number."""
+    count = 0
+    for j in range(problem.law.size):
+        motion.trial[1, j] = 1 if rests(problem, motion, j) else 0
+        count += motion.trial[1, j]
+    return count
+
+
+@kernel
+def _slipped(motion):
+    """Whether a contact that is marked has slipped or been open."""
+    for j in range(motion.sense.size):
+        counts = motion.counts
+        if motion.trial[1, j] != 0 and (counts[MOVED, j] != 0.0 or counts[OPEN, j] != 0.0):
+            return True
+    return False
+
+
+@kernel
+def _keeps_places(problem, row, cell, motion, memory, periods):
+    """Whether contacts that rest in the orbit in `memory` do not slip on the way there from the last state.
+
+    Their places decide where the orbit is, and are those of the last slip.
+    """
+    begin_return(problem, row, cell, motion, memory)
+    if go_round(problem, row, cell, motion, periods, False) != FOLLOWED:
+        return False
+    if _mark_rests(problem, motion) == 0:
+        return True
+    orbit, pattern = memory.kept[LONGEST], memory.kept_patterns[LONGEST]
+    _copy_state(memory.start, memory.pattern, orbit, pattern)
+    size = state_size(problem, row, orbit)
+    _last_state(memory)
+    arrives = distance(problem, row, memory.start, orbit) <= _ARRIVED * size
+    for _ in range(_MOST_RETURNS):
+        if arrives:
+            break
+        begin_return(problem, row, cell, motion, memory)
+        if go_round(problem, row, cell, motion, periods, False) != FOLLOWED or _slipped(motion):
+            break
+        take_state(problem, motion, memory.start, memory.pattern)
+        arrives = distance(problem, row, memory.start, orbit) <= _ARRIVED * size
+    _copy_state(orbit, pattern, memory.start, memory.pattern)
+    return arrives
+
+
+@kernel
 def _try_orbit(problem, row, cell, motion, memory, back, off):
     """Look for the orbit near the last state; its periods, 0 without one, and its multiplier.
 
@@ -167,6 +223,8 @@ def _try_orbit(problem, row, cell, motion, memory, back, off):
     periods = _least_period(problem, row, cell, motion, memory, back)
     if 0 < periods < back:
         found = multiplier(problem, motion, memory)
+    if periods > 0 and not _keeps_places(problem, row, cell, motion, memory, periods):
+        return 0, 0.0
     return periods, found
 
 

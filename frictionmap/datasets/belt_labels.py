@@ -28,7 +28,8 @@ STATUSES = (
     ),
     regimes.Code(
         regimes.IRREGULAR, "irregular",
-        "a motion that does not repeat within 4000 maxima: extremes and stuck_fraction are those of the last ones",
+        "a motion that does not repeat within 4000 maxima: extremes and stuck_fraction are those of the last "
+        "ones",
         "no period; extremes and stuck_fraction are those of the last cycles followed",
     ),
     regimes.Code(

@@ -1,6 +1,6 @@
 """Regimes on a belt without a load, over belt speed and friction, with the limits over them."""
 
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Literal, Unpack
 
 import numpy as np
 import xarray as xr
@@ -72,9 +72,11 @@ def _curves(ax: Axes, panel: xr.Dataset, speed: Grid, beta: Grid) -> list[Handle
         limit = panel["beta_sliding_lim"].values
         if np.isfinite(limit).any():
             drawn = np.where(np.isfinite(limit), np.minimum(limit, HIGH * beta.limits[1]), np.nan)
-            handles += ax.plot(
-                speed.values, drawn, path_effects=halo(), drawstyle="steps-mid", **SLIDING_LIMIT
+            # the slope of segments is the same at many speeds, that of a formula at none
+            style: Literal["steps-mid", "default"] = (
+                "steps-mid" if np.unique(limit).size < limit.size else "default"
             )
+            handles += ax.plot(speed.values, drawn, path_effects=halo(), drawstyle=style, **SLIDING_LIMIT)
     return handles
 
 

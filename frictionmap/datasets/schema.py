@@ -74,7 +74,8 @@ def kind(ds: xr.Dataset) -> str:
     "map", "curves", "response", "boundaries", "estimates", "shares", "design", "history", "spectrum" or
     "belt".
     """
-    if any(name in ds.variables for name in ("growth", "beta_sliding_lim", "cycle_speed_lim")):
+    of_belts = ("growth", "beta_sliding_lim", "cycle_speed_lim")
+    if "wall_speed" in ds.variables and any(name in ds.variables for name in of_belts):
         return "belt"
     if "estimate" in ds.variables:
         return "estimates"

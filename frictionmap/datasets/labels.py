@@ -386,6 +386,35 @@ GENERAL_VARIABLES = {
         most=1.0,
         nan=True,
     ),
+    "open_fraction": Label(
+        np.float32,
+        "share of the steady period for which the contact is open",
+        CELL,
+        comment="NaN for a contact whose normal force does not move, and where unresolved",
+        least=0.0,
+        most=1.0,
+        nan=True,
+    ),
+    "separations_per_cycle": Label(
+        np.float32,
+        "separations of the contact that begin per excitation period",
+        CELL,
+        comment="NaN for a contact whose normal force does not move, and where unresolved",
+        least=0.0,
+        nan=True,
+    ),
+    "normal_force_min": _range_label("least normal force in the contact, over P", least=0.0),
+    "normal_force_max": _range_label("largest normal force in the contact, over P", least=0.0),
+    "spring_crossings": Label(
+        np.float32,
+        "knots of a piecewise linear spring that its displacement passes, per excitation period",
+        (*CELL, "spring"),
+        least=0.0,
+        nan=True,
+    ),
+    "spring_force_max": _range_label(
+        "largest modulus of the force of a piecewise linear spring, over P", "spring", least=0.0
+    ),
     "unique": Label(
         np.int8,
         "whether it is proved that every start leads to this steady state: mu = 1, and damping outweighs "
@@ -407,6 +436,7 @@ GENERAL_VARIABLES = {
 #: Of these, the ones that are not of single contacts.
 _OF_ALL_CONTACTS = (
     "peak_to_peak", "midpoint", "release_order", "drift", "acceleration_amplitude", "base_force", "unique",
+    "spring_crossings", "spring_force_max",
 )  # fmt: skip
 
 #: Variables of all maps that have one value per contact where there are several.
@@ -420,7 +450,7 @@ PER_CONTACT = (
 )  # fmt: skip
 
 #: Variables over time that have one row per contact where there are several.
-CONTACT_TRACES = ("z", "friction", "direction", "y")
+CONTACT_TRACES = ("z", "friction", "direction", "y", "normal_force", "open")
 
 
 def with_contact(dims: tuple[str, ...]) -> tuple[str, ...]:
@@ -773,6 +803,11 @@ _SENSES = (
     regimes.Code(1, "sliding_up", "the contact slides towards larger z"),
 )
 
+_OPEN = (
+    regimes.Code(0, "closed", "the contact is closed"),
+    regimes.Code(1, "open", "the contact is open: it has no normal force"),
+)
+
 HISTORY_VARIABLES = {
     "x": Label(np.float64, "displacement of the masses, over P/k1 (Y)", ("dof", "tau")),
     "v": Label(np.float64, "velocity of the masses, dx/dtau, over P/k1 (Y)", ("dof", "tau")),
@@ -788,6 +823,10 @@ HISTORY_VARIABLES = {
     "event_z": Label(np.float64, "motion in the contact at the event, over P/k1 (Y)", ("event",)),
     "load": Label(np.float64, "sum of the loads on the masses, over P", ("tau",)),
     "event_contact": Label(np.int64, "contact that the event is of, counted from 1", ("event",), least=1),
+    "normal_force": Label(np.float64, "normal force in the contact, over P", ("tau",), least=0.0, nan=True),
+    "open": Label(np.int8, "whether the contact is open", ("tau",), _OPEN),
+    "spring_force": Label(np.float64, "force of a piecewise linear spring, over P", ("spring", "tau")),
+    "event_open": Label(np.int8, "whether the contact is open after the event", ("event",), _OPEN),
     "y": Label(
         np.float64, "displacement of the slider of an elastic contact, over P/k1 (Y)", ("tau",), nan=True
     ),
@@ -854,6 +893,7 @@ MEASURES = {
         "peak_threshold", "friction_harmonic", "transmitted_force", "transmitted_first_harmonic", "friction",
         "beta_stick_contact", "beta_noslip", "no_stop_begin", "no_stop_end", "border_beta",
         "base_force",
+        "normal_force_min", "normal_force_max", "spring_force_max", "normal_force", "spring_force",
     ),
     "work": ("work_friction", "work_input", "work_damping", "work_wall"),
     "frequency": (
@@ -914,6 +954,8 @@ BESIDE = {
     "contact": Label(np.int64, "contact, counted from 1", ("contact",), least=1),
     "contact_name": Label(np.str_, "name of the contact", ("contact",)),
     "point_name": Label(np.str_, "name of the point", ("dof",)),
+    "spring": Label(np.int64, "piecewise linear spring, counted from 1", ("spring",), least=1),
+    "spring_name": Label(np.str_, "name of the spring", ("spring",)),
     "frequency": Label(np.float64, "excitation frequency", ("r",), least=0.0, units="Hz"),
     "friction_force": Label(np.float64, "kinetic friction force", ("beta",), least=0.0, units="N"),
     "friction_coefficient": Label(np.float64, "coefficient of kinetic friction", ("beta",), least=0.0),

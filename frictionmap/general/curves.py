@@ -14,7 +14,7 @@ from ..model.settings import RECORDED, CurveSettings, Solver
 from ..model.system import System
 from .boundaries import find_boundaries, stays_at_rest
 from .certificate import certified_beta
-from .cycle import equivalent, first_harmonics, harmonic_values, parts, phase_values, work_values
+from .cycle import equivalent_of, first_harmonics, harmonic_values, parts, phase_values, work_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
 from .held import held_displacements, held_ranges
 from .maps import put_offset
@@ -48,7 +48,7 @@ def _cell(system: System, steps: Steps, asked: CurveSettings) -> dict[str, np.nd
     if "energy" in quantities:
         values |= work_values(system, steps)
         values |= {"sliding_distance": found["sliding_distance"], "work_wall": found["work_wall"]}
-        values |= equivalent(steps, phasors)
+        values |= equivalent_of(phasors)
     return values
 
 
@@ -83,7 +83,7 @@ def _stuck(system: System, asked: CurveSettings, r: float) -> dict[str, np.ndarr
     return values
 
 
-def _variable(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
+def of_cells(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
     """Label values (n_mu, n_r, n_beta, ...); those of contacts get that dimension at its place."""
     label = labels_of("curves")[name]
     values = values.astype(label.dtype, copy=False)
@@ -142,7 +142,7 @@ def general_curves(
         if new in tables:
             tables[old] = tables[new]
     variables = {
-        name: _variable(name, values, count) for name, values in tables.items() if is_wanted(name, general)
+        name: of_cells(name, values, count) for name, values in tables.items() if is_wanted(name, general)
     }
     coords = {name: coordinate(name, values) for name, values in axes.items()} | contact_coordinates(system)
     return xr.Dataset(variables | boundary_variables(system, limits), coords=coords)

@@ -131,7 +131,7 @@ def phase_values(steps: Steps) -> dict[str, np.ndarray]:
     return {"phase_lag": found}
 
 
-def equivalent(steps: Steps, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def equivalent_of(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Equivalent stiffness and damping of each contact, from F_1/Z_1; NaN where it rests."""
     z, f = found["contact_harmonic"][:, 1], found["friction_harmonic"][:, 1]
     moves = np.abs(z) > _ROUNDING

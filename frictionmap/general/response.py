@@ -47,7 +47,7 @@ def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarr
         "direction": steps.senses[k].T.astype(np.int8),
     }
     if system.load is None and not general.base:
-        found["load"] = _load(general, tau)
+        found["load"] = load_over(general, tau)
     kt = steps.problem.spring[:, np.newaxis]
     if kt.any():
         belt = steps.problem.belt[:, np.newaxis] * tau
@@ -56,7 +56,7 @@ def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarr
     return found
 
 
-def _load(general: ContactSystem, tau: np.ndarray) -> np.ndarray:
+def load_over(general: ContactSystem, tau: np.ndarray) -> np.ndarray:
     """Load over tau: the sum of those on all masses."""
     phasors = {n: complex(vector.sum()) for n, vector in general.loads.items()}
     return sum((p * np.exp(1j * n * tau)).real for n, p in phasors.items()) + np.zeros_like(tau)
@@ -92,7 +92,7 @@ def scalars(system: System, steps: Steps, further: Collection[str] = ()) -> dict
     return {name: output_values(name, system, steps.cells)[0, 0, 0] for name in names}
 
 
-def labelled(name: str, values: np.ndarray, contacts: int, what: str = "") -> xr.Variable:
+def of_cell(name: str, values: np.ndarray, contacts: int, what: str = "") -> xr.Variable:
     """Label numbers of one cell; those of each contact have its dimension where there are several."""
     values = values.astype(LABELS[name].dtype, copy=False) if name in LABELS else values
     if name not in PER_CONTACT:
@@ -101,7 +101,8 @@ def labelled(name: str, values: np.ndarray, contacts: int, what: str = "") -> xr
     return one if contacts == 1 else xr.Variable(("contact", *one.dims), values, one.attrs)
 
 
-def _trace(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
+def contact_trace(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
+    """Label values (N, T) over time; one contact has no dimension of its own."""
     if contacts == 1:
         return label_variable(name, values[0])
     return xr.Variable(("contact", "tau"), values, label_variable(name, values[0]).attrs)
@@ -126,7 +127,7 @@ def general_response(
     variables: dict[str, xr.Variable] = {}
     for name, values in traces.items():
         if name in CONTACT_TRACES:
-            variables[name] = _trace(name, values, count)
+            variables[name] = contact_trace(name, values, count)
         else:
             variables[name] = label_variable(name, values)
     events = _events(system, steps)
@@ -136,7 +137,7 @@ def general_response(
     found |= cycle_values(system, steps, HARMONICS)
     for name, values in found.items():
         if is_wanted(name, general):
-            variables[name] = labelled(name, values, count, "response")
+            variables[name] = of_cell(name, values, count, "response")
     limits = find_boundaries(system, np.array([r]), np.array([mu]))
     variables |= {
         name: v[0, 0] for name, v in boundary_variables(system, limits).items() if v.dims[0] == "mu"

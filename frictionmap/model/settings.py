@@ -63,6 +63,12 @@ GeneralOutput = Literal[
     "release_order",
     "segment_crossings",
     "segment_fraction",
+    "open_fraction",
+    "separations_per_cycle",
+    "normal_force_min",
+    "normal_force_max",
+    "spring_crossings",
+    "spring_force_max",
     "unique",
 ]
 GENERAL_OUTPUTS: tuple[str, ...] = get_args(GeneralOutput)

@@ -8,6 +8,11 @@ arrays      the same as arrays for the kernels
 quantities  outputs of cells: names, what they are computed from
 motion      one motion in time, from the Taylor terms of its steps
 solve       steady motions over mu, r and beta
+given       the same of a system of the model
+dataset     maps as labelled variables
+cycle       harmonics, works and phases of a steady motion
+response    one steady motion in time, as labelled variables
+curves      response curves
 sliding     steady sliding on belts: its place, and the growth of small vibrations
 free        steady motions without a load over mu, belt speed and beta
 ==========  ==================================================================================

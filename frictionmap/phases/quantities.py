@@ -84,6 +84,7 @@ def contact_regimes(solved: Solved) -> np.ndarray:
     found[counts[:, STUCK] == 0.0] = regimes.CONTINUOUS
     one_way = (counts[:, STUCK] == 0.0) & (counts[:, OPEN] == 0.0) & (counts[:, MOVED] < 3.0)
     found[one_way & ~still] = regimes.ONE_WAY_SLIDING
+    found[(found == regimes.CONTINUOUS) & (solved.law == ELASTIC)] = regimes.STICK_SLIP  # it slips
     found[still] = regimes.PERMANENT_STICKING
     found[:, solved.law == SMOOTH] = regimes.CONTINUOUS
     found[np.isnan(solved.recorded[:, 0])] = regimes.UNRESOLVED

@@ -1,16 +1,17 @@
 """Steady motions over mu, r and beta."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .. import checks
 from .._kernels.phases.fill import AVERAGED, PERIOD, Cells, Grid, fill_cells
+from .._kernels.phases.problem import Problem
 from ..errors import InputError
 from ..jobs import Job, Progress, Watch, run_counted
 from .arrays import Modal, allocate, grid_of, modal, problem_of, row_of
-from .motion import events, in_time, steps_of, works
+from .motion import Steps, events, in_time, steps_of, works
 from .quantities import TABLE, solved_of
 from .system import PhaseSystem
 
@@ -122,23 +123,45 @@ def response_phases(
     dict
         tau (T,), traces (..., T), events, numbers of the motion; without traces where none was found.
     """
+    one = find_motion(system, r, beta, mu, start, cycles)
+    if one.steps is None:
+        return one.numbers
+    shown = one.period or min(_SHOWN, one.averaged)
+    tau = np.linspace(0.0, 2.0 * np.pi * shown, shown * points + 1)
+    traces = in_time(system, one.problem, one.modes, one.steps, one.preload, tau)
+    works_of = works(system, one.modes, one.steps, r, one.averaged)
+    return {"tau": tau, **traces, **events(one.steps), **one.numbers, **works_of}
+
+
+class Found(NamedTuple):
+    """One steady motion, or the last periods of one that does not repeat."""
+
+    problem: Problem
+    modes: Modal
+    preload: np.ndarray  # (N,) N0
+    numbers: dict[str, np.ndarray]  # outputs
+    averaged: int  # periods of the load that its steps cover; 0: none was found
+    period: int  # of the steady motion; 0: it does not repeat
+    steps: Steps | None
+
+
+def find_motion(
+    system: PhaseSystem, r: float, beta: float, mu: float, start: Start = "rest", cycles: int = 2000
+) -> Found:
+    """Find one steady motion and its steps; arguments as of `response_phases`."""
     modes = modal(system)
     problem = problem_of(system, modes, observed_rows(system.n))
     row = row_of(system, problem, modes, r)
     grid = grid_of(system, modes, np.array([beta]), mu, cycles)
     grid = grid._replace(start=start_state(system, modes, r, start))
     cells, motion = _one(problem, row, grid, 0)
-    averaged = cells.numbers[0, AVERAGED]
+    averaged = int(np.nan_to_num(cells.numbers[0, AVERAGED]))
     numbers = {name: values(solved_of(problem, cells))[0] for name, values in TABLE.items()}
-    if not averaged > 0.0:
-        return numbers
+    if averaged <= 0:
+        return Found(problem, modes, grid.preload[0], numbers, 0, 0, None)
     cells, motion = _one(problem, row, grid, int(motion.record.count[0]))
-    steps = steps_of(problem, row, motion)
-    numbers |= works(system, modes, steps, r, int(averaged))
-    shown = int(cells.numbers[0, PERIOD]) or min(_SHOWN, int(averaged))
-    tau = np.linspace(0.0, 2.0 * np.pi * shown, shown * points + 1)
-    traces = in_time(system, problem, modes, steps, grid.preload[0], tau)
-    return {"tau": tau, **traces, **events(steps), **numbers}
+    period, steps = int(cells.numbers[0, PERIOD]), steps_of(problem, row, motion)
+    return Found(problem, modes, grid.preload[0], numbers, averaged, period, steps)
 
 
 def _one(problem: Any, row: Any, grid: Grid, steps: int) -> tuple[Cells, Any]:

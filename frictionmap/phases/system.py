@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .._kernels.phases.problem import ELASTIC, RIGID, SMOOTH
+from ..model.spring_element import SpringElement
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,7 @@ class PhaseSystem:
     damping: np.ndarray
     stiffness: np.ndarray
     contacts: Sequence[PhaseContact] = ()
-    springs: Sequence[PhaseSpring] = ()
+    springs: Sequence[PhaseSpring | SpringElement] = ()
     loads: Mapping[int, np.ndarray] = field(default_factory=dict)
     base: Mapping[int, complex] = field(default_factory=dict)
     offset: np.ndarray | None = None

@@ -35,7 +35,9 @@ class PhasesEngine(Engine):
 
     @property
     def least_ratio(self) -> float:
-        return 0.0
+        from ..phases.given import least_ratio
+
+        return least_ratio(self.system)
 
     @property
     def least_stick_ratio(self) -> float:
@@ -48,11 +50,15 @@ class PhasesEngine(Engine):
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        return ()
+        from ..phases.quantities import TABLE
+
+        return tuple(TABLE)
 
     @property
     def bytes_per_cell(self) -> float:
-        return 0.0
+        general = self.system.contact_system
+        values = 40 * general.count + 10 * self.system.n + 10 * len(general.springs)
+        return 8.0 * values
 
     def _refuse(self, what: str) -> NoReturn:
         refuse_phases(self.system, what)
@@ -77,7 +83,9 @@ class PhasesEngine(Engine):
         self, axes: Mapping[str, np.ndarray], solver: Solver, threads: int | None, progress: Progress | None,
         watch: Watch | None = None,
     ) -> "xr.Dataset":  # fmt: skip
-        self._refuse("compute maps")
+        from ..phases.dataset import phase_map
+
+        return phase_map(self.system, axes, solver, threads, progress, watch)
 
     def cells(
         self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
@@ -89,10 +97,14 @@ class PhasesEngine(Engine):
         self, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
         progress: Progress | None, watch: Watch | None = None,
     ) -> "xr.Dataset":  # fmt: skip
-        self._refuse("compute response curves")
+        from ..phases.curves import phase_curves
+
+        return phase_curves(self.system, axes, solver, asked, progress, watch)
 
     def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
-        self._refuse("compute steady states in time")
+        from ..phases.response import phase_response
+
+        return phase_response(self.system, r, beta, mu, solver, points)
 
     @property
     def sizes(self) -> tuple[str, ...]:

@@ -88,6 +88,7 @@ PICTURED = {
     "response": frozenset(
         (
             *("regime", "contact_regime", "stops_per_cycle", "slips_per_cycle", "period", "status"),
+            "separations_per_cycle",
             *(*HISTORY_VARIABLES, *HARMONIC_VARIABLES),
         )
     ),

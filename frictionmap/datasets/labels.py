@@ -76,6 +76,7 @@ COORDINATES = {
     "harmonic": Label(
         np.int64, "harmonic of the excitation frequency; 0 is the mean", ("harmonic",), least=0
     ),
+    "spring": Label(np.int64, "piecewise linear spring, counted from 1", ("spring",), least=1),
     "segment": Label(np.int64, "segment of the friction over the speed", ("segment",), least=1),
     "part": Label(np.str_, "part of a complex number", ("part",), texts=("real", "imaginary")),
     "outcome": Label(
@@ -954,7 +955,6 @@ BESIDE = {
     "contact": Label(np.int64, "contact, counted from 1", ("contact",), least=1),
     "contact_name": Label(np.str_, "name of the contact", ("contact",)),
     "point_name": Label(np.str_, "name of the point", ("dof",)),
-    "spring": Label(np.int64, "piecewise linear spring, counted from 1", ("spring",), least=1),
     "spring_name": Label(np.str_, "name of the spring", ("spring",)),
     "frequency": Label(np.float64, "excitation frequency", ("r",), least=0.0, units="Hz"),
     "friction_force": Label(np.float64, "kinetic friction force", ("beta",), least=0.0, units="N"),

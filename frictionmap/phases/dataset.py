@@ -83,7 +83,7 @@ def spring_coordinates(system: System) -> dict[str, xr.Variable]:
     }
 
 
-def solved(
+def solve_cells(
     system: System, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver,
     threads: int | None, progress: Progress | None, watch: Watch | None,
 ) -> dict[str, np.ndarray]:  # fmt: skip
@@ -162,7 +162,7 @@ def phase_map(
     general = system.contact_system
     refuse_static(general, axes["mu"])
     names = outputs_of(general, solver)
-    found = solved(system, axes, (*names, "open_fraction"), solver, threads, progress, watch)
+    found = solve_cells(system, axes, (*names, "open_fraction"), solver, threads, progress, watch)
     variables = {name: labelled(name, found[name], general) for name in names}
     with_belt_regimes(variables, general)
     coords = {name: coordinate(name, values) for name, values in axes.items()}

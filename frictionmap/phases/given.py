@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import InputError
 from ..general.held import linear_parts, orders_of
 from ..general.problem import refuse_loop
-from ..model.general import ContactSystem, MergedContact
+from ..model.general import DISPLACEMENT, ContactSystem, MergedContact
 from ..model.system import System
 from .arrays import fastest, modal, problem_of
 from .system import PhaseContact, PhaseSystem
@@ -77,7 +77,7 @@ def phase_system(system: System, r: float) -> PhaseSystem:
     """The structure, contacts, springs and loads of a system at one frequency ratio > 0."""
     general: ContactSystem = system.contact_system
     refuse_loop(general)
-    if system.base_control != "displacement":
+    if system.base_control != DISPLACEMENT:
         general = system.at_frequency(r).contact_system
     modes = system.modes
     contacts = [_contact(group, f"contacts[{k}]") for k, group in enumerate(general.groups, 1)]
@@ -90,7 +90,7 @@ def phase_system(system: System, r: float) -> PhaseSystem:
 def changes_with_r(system: System) -> bool:
     """Whether the loads on the masses depend on r."""
     relative = system.damping_reference == "base" and bool(system.modes.damping.any())
-    return relative or system.base_control != "displacement"
+    return relative or system.base_control != DISPLACEMENT
 
 
 def least_ratio(system: System) -> float:

@@ -134,7 +134,7 @@ def response_phases(
 
 
 class Found(NamedTuple):
-    """One steady motion, or the last periods of one that does not repeat."""
+    """A steady motion, or the last periods of a motion that does not repeat."""
 
     problem: Problem
     modes: Modal

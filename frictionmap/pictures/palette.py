@@ -169,3 +169,7 @@ def colour_table() -> np.ndarray:
     for row, look in zip(table, CLASSES, strict=False):
         row[:] = [int(look.colour[k : k + 2], 16) for k in (1, 3, 5)] + [255]
     return table
+
+
+#: Times at which a contact is open, in pictures of motions.
+OPEN_LABEL, OPEN_COLOUR, OPEN_HATCH = "open", "#bcd9f2", "////"

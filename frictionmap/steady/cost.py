@@ -107,7 +107,10 @@ def _memory(
     cells = 0.0
     for name in names:
         label = labels[name]
-        cells += np.dtype(label.dtype).itemsize * math.prod(float(counts[dim]) for dim in label.dims)
+        cells += np.dtype(label.dtype).itemsize * math.prod(
+            float(counts.get(dim, 1))
+            for dim in label.dims  # those of contacts and springs: `bytes_per_cell`
+        )
     frequency = _PER_FREQUENCY + (_PER_MASS * masses if masses > 1 else 0.0)
     rows = counts["mu"] * counts["r"]
     return _BASE + _WRITING * (points * cells + one) + points * rows * frequency + counts["beta"] * _PER_BETA

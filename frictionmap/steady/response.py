@@ -26,9 +26,11 @@ _TITLE = "Steady state in time"
 
 
 def _commented(ds: xr.Dataset, comment: str) -> xr.Dataset:
-    """Add the comment on an irregular motion, if there is one."""
+    """Add the comment on a motion, if there is one; of an irregular one the title says that it is a part."""
     if comment:
-        ds.attrs |= {"title": "Motion in time, a part of it", "comment": comment}
+        ds.attrs["comment"] = comment
+        if not int(ds["period"]):
+            ds.attrs["title"] = "Motion in time, a part of it"
     return ds
 
 

@@ -134,6 +134,7 @@ def swept(
         checks.cells(grid["mu"].size, grid["r"].size, grid["beta"].size, points=variations.count)
         ds = _study(variations, grid, solver, threads, progress, watch)
     first = system if variations is None else variations.at(next(variations.points()))
+    comment = ds.attrs.get("comment")
     asked = "status" in solver.outputs or engine_of(first).states_status
     if not asked and not ds["status"].values.any():
         ds = ds.drop_vars("status")  # kept where any cell is unresolved or averaged
@@ -149,6 +150,8 @@ def swept(
         units=units,
     )
     ds.attrs |= reduction_check(system, grid, solver, threads, watch)
+    if comment:
+        ds.attrs["comment"] = comment
     ds = ds if variations is None else ds.assign_attrs(system=variations.describe())
     return with_units(ds, scales)
 

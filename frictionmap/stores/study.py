@@ -142,7 +142,7 @@ class Study(Contents):
     def coordinates(self) -> dict[str, xr.Variable]:
         """The further axes, those of the grid, and what goes with them."""
         grid = {name: coordinate(name, getattr(self, name)) for name in ("mu", "r", "beta")}
-        own = ("dof", "contact", "contact_name", "segment", "point_name")
+        own = ("dof", "contact", "contact_name", "segment", "point_name", "spring", "spring_name")
         further = {name: self.sample[name].variable for name in own if name in self.sample.coords}
         return study_coordinates(self.variations) | grid | self._physical() | further
 

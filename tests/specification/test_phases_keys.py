@@ -249,3 +249,61 @@ def test_a_free_structure_with_them_is_refused():
         fm.InputError, match="cannot compute steady states of a free structure with springs: "
     ):
         fm.sweep(system, [0.5], [1.0])
+
+
+MAP = """\
+title = "Damper and gap"
+[system]
+mass_ratios = [1.0, 1.0]
+stiffness_ratios = [1.0, 0.5]
+damping_ratios = 0.03
+load = [1.0, [0.5, 0.6]]
+[[system.contacts]]
+masses = [1]
+stiffness = 3.0
+normal = { mass = 2, stiffness = 1.0, friction = 0.4 }
+[[system.contacts]]
+kind = "between-masses"
+masses = [1, 2]
+ratio = 0.2
+[[system.springs]]
+masses = [2]
+gap = 0.5
+stiffness = 1.0
+[grid]
+r = [0.6, 1.2]
+beta = [0.1, 0.3]
+[solver]
+outputs = ["regime", "stops_per_cycle", "open_fraction", "normal_force_max", "spring_force_max", "unique"]
+[units]
+stiffness = "2 N/mm"
+natural_frequency = "10 Hz"
+load = "4 N"
+"""
+
+
+@pytest.mark.filterwarnings("ignore:The data type")  # texts in stores have no standard yet
+def test_files_of_all_kinds(command, tmp_path):
+    """Maps, curves, boundaries and motions are written, read, described, drawn; a store has the same bits."""
+    (tmp_path / "two.toml").write_text(MAP)
+    for call in (
+        "map two.toml -o map.nc", "map two.toml -o map.zarr", "curves two.toml -o curves.nc",
+        "boundaries two.toml -o limits.nc", "response two.toml --r 1.2 --beta 0.1 -o motion.nc",
+    ):  # fmt: skip
+        assert command(call)[0] == 0
+    for name in ("map.nc", "map.zarr", "curves.nc", "limits.nc", "motion.nc"):
+        assert command(f"info {name}") == (0, "")
+    for name in ("map.nc", "curves.nc", "motion.nc"):
+        assert command(f"plot {name} -o {name}.png")[0] == 0
+    assert command("plot map.nc --quantity open_fraction --at contact=1 -o open.png")[0] == 0
+    whole, stored = fm.open("map.nc"), fm.open("map.zarr")
+    for name in whole.variables:
+        np.testing.assert_array_equal(stored[name].values, whole[name].values)
+    assert whole["spring_name"].values.tolist() == ["spring 2"]
+    np.testing.assert_allclose(whole["spring_force_max_N"], 4.0 * whole["spring_force_max"])
+    motion = fm.open("motion.nc")
+    assert motion["normal_force"].dims == ("contact", "tau")
+    assert np.isnan(motion["normal_force"].values[1]).all()
+    np.testing.assert_array_equal(motion["open"].values[0] == 1, motion["normal_force"].values[0] == 0.0)
+    assert motion["spring_force"].dims == ("spring", "tau")
+    assert fm.open("limits.nc").sizes["r"] == 2

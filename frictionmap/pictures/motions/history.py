@@ -15,7 +15,7 @@ from ...errors import InputError
 from ..drawing import with_options
 from ..marks import spread
 from ..options import FigureOptions, current
-from ..palette import CLASSES, LINES, STUCK, Shade
+from ..palette import CLASSES, LINES, OPEN_COLOUR, OPEN_HATCH, OPEN_LABEL, STUCK, Shade
 from ..panels import Handle, given_axes, halo, legend_below, new_figure, title_figure
 from ..second_axes import in_brackets, on_the_right, time_on_top
 from ..shapes import check_holds, check_range, to_draw
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from ..panels import AxesArray
 
 
-#: Height of the panels: load, motion in the contact, masses, friction.
-_HEIGHTS = {"load": 1.0, "z": 2.4, "masses": 3.0, "friction": 2.2}
+#: Height of the panels: load, motion in the contact, masses, friction, normal forces, forces of springs.
+_HEIGHTS = {"load": 1.0, "z": 2.4, "masses": 3.0, "friction": 2.2, "normal": 1.8, "springs": 1.8}
 
 #: Height of a row of the panel that shows when each of several contacts is stuck.
 _BAR = 0.3
@@ -46,6 +46,7 @@ _GAP, MOST_LABELS = 0.09, 11
 #: Largest range of a motion that counts as constant.
 _ROUNDING = 1e-9
 
+_OPEN_SHADE: Shade = {"color": OPEN_COLOUR, "alpha": 0.55, "linewidth": 0.0}
 _SHADE: Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.55, "linewidth": 0.0}
 #: Size of the marks of events.
 _DOT = 4.5
@@ -153,6 +154,10 @@ def _draw_stuck(ax: Axes, turns: np.ndarray, traces: Sequence[Trace]) -> None:
         ax.fill_between(
             turns, row - 0.36, row + 0.36, where=trace.stuck.tolist(), color=trace.colour, linewidth=0.0
         )
+        ax.fill_between(
+            turns, row - 0.36, row + 0.36, where=trace.opened.tolist(), facecolor="none",
+            edgecolor=trace.colour, hatch=OPEN_HATCH, linewidth=0.0,
+        )  # fmt: skip
     ax.set_yticks(range(len(traces)), [str(trace.number) for trace in traces])
     ax.set_ylim(len(traces) - 0.5, -0.5)
     slips = any(trace.elastic for trace in traces)
@@ -181,6 +186,11 @@ def _friction_levels(ds: xr.Dataset, trace: Trace) -> tuple[dict[str, float], np
     if levels is None:
         return {}, None
     index = f"_{{{trace.number}}}" if trace.number else ""
+    if levels.over_normal:
+        found = {rf"\varphi N{index}": levels.kinetic}
+        if levels.static > levels.kinetic:
+            found[rf"\mu{index}\varphi N{index}"] = levels.static
+        return found, levels.factor
     found = {rf"\beta{index}": levels.kinetic}
     if levels.static > levels.kinetic:
         found[rf"\mu{index}\beta{index}"] = levels.static
@@ -218,6 +228,29 @@ def _draw_friction(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence
     ax.set_ylabel("friction / $P$")
 
 
+def _draw_normal(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence[Trace]) -> None:
+    """Draw the normal forces that move with the structure."""
+    for trace in traces:
+        if trace.normal is not None:
+            ax.plot(turns, trace.normal, color=trace.colour if trace.label else "black", linewidth=1.2)
+    ax.set_ylim(bottom=0.0)
+    on_the_right(ax, ds, "force", "normal force")
+    ax.set_ylabel("normal\nforce / $P$")
+
+
+def _draw_springs(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
+    """Draw the forces of piecewise linear springs, with their numbers at the ends of the lines."""
+    forces = np.atleast_2d(ds["spring_force"].values)
+    colours = [LINES[k % len(LINES)] for k in range(len(forces))]
+    for force, colour in zip(forces, colours, strict=True):
+        ax.plot(turns, force, color=colour, linewidth=1.2)
+    _set_limits_around(ax, forces)
+    on_the_right(ax, ds, "force", "springs")
+    if len(forces) > 1:
+        _label_beside(ax, forces[:, -1], [str(k + 1) for k in range(len(forces))], colours)
+    ax.set_ylabel("springs\nforce / $P$")
+
+
 def _mark_stops(
     axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray, traces: Sequence[Trace]
 ) -> list[Handle]:
@@ -228,11 +261,25 @@ def _mark_stops(
         for turn in inside:
             ax.axvline(turn, color=_LOAD_COLOUR, linewidth=1.0, linestyle=(0, (1, 2)), zorder=0.7)
     handles = _shade_stops(axes, ds, turns, traces[0]) if len(traces) == 1 else []
+    handles += _shade_open(axes, turns, traces)
     words = "maximum of the load (of the base's motion)" if moves_base(ds) else "maximum of the load"
     handles.append(
         Line2D([], [], color=_LOAD_COLOUR, label=words, marker="v", markersize=5.0, linestyle=(0, (1, 2)))
     )
     return handles
+
+
+def _shade_open(axes: Sequence[Axes], turns: np.ndarray, traces: Sequence[Trace]) -> list[Handle]:
+    """Shade in all panels when a single contact is open; the bars of several show it."""
+    if not any(trace.opened.any() for trace in traces):
+        return []
+    if len(traces) > 1:
+        return [Patch(facecolor="none", edgecolor="black", hatch=OPEN_HATCH, linewidth=0.0, label=OPEN_LABEL)]
+    opened = traces[0].opened.tolist()
+    for ax in axes:
+        transform = ax.get_xaxis_transform()
+        ax.fill_between(turns, 0, 1, where=opened, transform=transform, zorder=0.4, **_OPEN_SHADE)
+    return [Patch(**_OPEN_SHADE, label=OPEN_LABEL)]
 
 
 def _shade_stops(axes: Sequence[Axes], ds: xr.Dataset, turns: np.ndarray, trace: Trace) -> list[Handle]:
@@ -270,6 +317,15 @@ def _counts(ds: xr.Dataset) -> str:
     return f", {' and '.join(f'{number} {word}' for number, word in found)} per cycle"
 
 
+def _separations(ds: xr.Dataset) -> str:
+    """Numbers of separations per cycle of all contacts that can open; empty if there are none."""
+    if "separations_per_cycle" not in ds:
+        return ""
+    found = np.atleast_1d(ds["separations_per_cycle"].values)
+    found = found[np.isfinite(found)]
+    return f", {' and '.join(f'{n:.4g}' for n in found)} separations per cycle" if found.any() else ""
+
+
 def title_of(ds: xr.Dataset) -> str:
     """Title with the cell and its result."""
     symbols = {"r": "r", "beta": "β", "mu": "μ"}
@@ -284,7 +340,7 @@ def title_of(ds: xr.Dataset) -> str:
         return cell
     elastic = all(trace.elastic for trace in traces_of(ds)) if "z" in ds and "friction" in ds else False
     words = (_ELASTIC_WORDS if elastic else _REGIME_WORDS)[regime]
-    counted = _counts(ds)
+    counted = _counts(ds) + _separations(ds)
     if "status" in ds and int(ds["status"]) in regimes.WITHOUT_PERIOD:
         return f"{cell}: {words}{counted}, irregular, excerpt"
     period = int(ds["period"]) if "period" in ds else 1
@@ -308,6 +364,8 @@ def _panels(ds: xr.Dataset, traces: Sequence[Trace]) -> dict[str, float]:
         "stuck": len(traces) > 1,
         "masses": not same,
         "friction": True,
+        "normal": any(trace.normal is not None for trace in traces),
+        "springs": "spring_force" in ds,
     }
     heights = {**_HEIGHTS, "stuck": _BAR * (len(traces) + 1)}
     return {name: heights[name] for name, shown in there.items() if shown}
@@ -363,7 +421,9 @@ def plot_response(
 
     Stops are shaded and their starts marked; masses are numbered; the levels of kinetic and static friction
     are labelled.  Several contacts have one colour each, and bars show when each is stuck.  For contacts with
-    a spring the hysteresis loop is drawn beside the traces.
+    a spring the hysteresis loop is drawn beside the traces.  Normal forces that move with the structure and
+    forces of piecewise linear springs have panels of their own, and times at which a contact is open are
+    shaded.
 
     Parameters
     ----------
@@ -372,7 +432,8 @@ def plot_response(
     ax : array of matplotlib axes, optional
         Axes to draw into, from top to bottom: load (unless loads are given mass by mass), motion in the
         contact, bars of several contacts, masses (unless a single mass moves with the contact), friction
-        force, hysteresis loop (if a contact has a spring).
+        force, normal forces and forces of piecewise linear springs (if there are any), hysteresis loop (if a
+        contact has a spring).
 
     Returns
     -------
@@ -421,6 +482,10 @@ def _draw_traces(axes: dict[str, Axes], ds: xr.Dataset, traces: Sequence[Trace])
         _draw_masses(axes["masses"], ds, turns)
     if "friction" in axes:
         _draw_friction(axes["friction"], ds, turns, traces)
+    if "normal" in axes:
+        _draw_normal(axes["normal"], ds, turns, traces)
+    if "springs" in axes:
+        _draw_springs(axes["springs"], ds, turns)
     over_tau = [*axes.values()]
     first, last = over_tau[0], over_tau[-1]
     last.set_xlabel(r"$\tau/\pi$")

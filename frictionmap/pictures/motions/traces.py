@@ -25,6 +25,8 @@ class Trace(NamedTuple):
     stuck: np.ndarray  # bool
     elastic: bool
     stops: tuple[np.ndarray, np.ndarray]  # phases at which stops begin, and z there
+    opened: np.ndarray  # bool
+    normal: np.ndarray | None  # normal force of a contact with one that moves
 
 
 def _stops(ds: xr.Dataset, number: int) -> tuple[np.ndarray, np.ndarray]:
@@ -48,9 +50,14 @@ def _trace(ds: xr.Dataset, number: int, colour: str, label: str) -> Trace:
     """The only contact, or one that was chosen."""
     elastic = "y" in ds and bool(np.isfinite(ds["y"].values).any())
     stuck = ds["direction"].values == 0 if "direction" in ds else np.zeros(ds.sizes["tau"], dtype=bool)
+    opened = ds["open"].values == 1 if "open" in ds else np.zeros(ds.sizes["tau"], dtype=bool)
+    normal = ds["normal_force"].values if "normal_force" in ds else None
+    if normal is not None and not np.isfinite(normal).any():
+        normal = None
     return Trace(
-        number, label, colour, ds["z"].values, ds["friction"].values, stuck, elastic, _stops(ds, number)
-    )
+        number, label, colour, ds["z"].values, ds["friction"].values, stuck, elastic, _stops(ds, number),
+        opened, normal,
+    )  # fmt: skip
 
 
 def traces_of(ds: xr.Dataset) -> list[Trace]:
@@ -66,11 +73,15 @@ def traces_of(ds: xr.Dataset) -> list[Trace]:
 
 
 class Levels(NamedTuple):
-    """Kinetic and static friction of a contact, and the factor of its normal load over tau."""
+    """Kinetic and static friction of a contact, and the factor of its normal load over tau.
+
+    Of a normal force N that moves with the structure the factor is N, and the friction is over it.
+    """
 
     kinetic: float
     static: float
     factor: np.ndarray | None  # None: constant
+    over_normal: bool = False
 
 
 def levels_of(ds: xr.Dataset, trace: Trace) -> Levels | None:
@@ -80,6 +91,9 @@ def levels_of(ds: xr.Dataset, trace: Trace) -> Levels | None:
     if contacts is None or trace.number > contacts.count:
         return None if trace.number else Levels(beta, mu * beta, None)
     group = contacts.groups[max(trace.number, 1) - 1]
+    if group.normal is not None and trace.normal is not None:
+        phi = group.normal.friction
+        return Levels(phi, phi * group.first.static_ratio(mu), trace.normal, True)
     kinetic, static = group.friction(beta, mu)
     tau = ds["tau"].values
     normal = [(phasor * np.exp(1j * n * tau)).real for n, phasor in group.first.nu.items()]

@@ -154,10 +154,11 @@ def _draw_stuck(ax: Axes, turns: np.ndarray, traces: Sequence[Trace]) -> None:
         ax.fill_between(
             turns, row - 0.36, row + 0.36, where=trace.stuck.tolist(), color=trace.colour, linewidth=0.0
         )
-        ax.fill_between(
-            turns, row - 0.36, row + 0.36, where=trace.opened.tolist(), facecolor="none",
-            edgecolor=trace.colour, hatch=OPEN_HATCH, linewidth=0.0,
-        )  # fmt: skip
+        if trace.opened.any():
+            ax.fill_between(
+                turns, row - 0.36, row + 0.36, where=trace.opened.tolist(), facecolor="none",
+                edgecolor=trace.colour, hatch=OPEN_HATCH, linewidth=0.0,
+            )  # fmt: skip
     ax.set_yticks(range(len(traces)), [str(trace.number) for trace in traces])
     ax.set_ylim(len(traces) - 0.5, -0.5)
     slips = any(trace.elastic for trace in traces)

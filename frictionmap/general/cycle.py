@@ -108,8 +108,7 @@ def first_harmonics(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 def phase_values(steps: Steps) -> dict[str, np.ndarray]:
     """Lags of the maxima of the displacements; NaN where the period is not 1 or the masses rest there."""
-    rows = steps.modal.points
-    count = steps.modal.phi.shape[0] if rows is None else len(rows.shapes)
+    count = len(steps.displacements(np.zeros(1)))
     if steps.period != 1 or steps.drifts:
         return {"phase_lag": np.full(count, np.nan)}
     tau = np.linspace(0.0, 2.0 * np.pi, _SAMPLES * max(64, steps.begins.size) + 1)[:-1]

@@ -9,6 +9,7 @@ import xarray as xr
 from .. import regimes
 from ..datasets.labels import LABELS
 from ..datasets.variables import coordinate, label_variable
+from ..errors import InputError
 from ..model.general import MergedContact
 from ..model.normal_contact import MovingNormal
 from ..model.system import System
@@ -86,7 +87,18 @@ def limit_variables(system: System, r: np.ndarray, mu: np.ndarray) -> dict[str, 
 
 
 def normal_boundaries(system: System, r: np.ndarray, mu: np.ndarray) -> xr.Dataset:
-    """Boundaries of a system with a normal force that moves with the structure, or with springs."""
+    """Boundaries of a system with one contact whose normal force moves with the structure.
+
+    Raises
+    ------
+    InputError
+        There is no closed form for the system.
+    """
+    if _parts(system) is None:
+        raise InputError(
+            "cannot compute boundaries of contacts that open or of piecewise linear springs: closed forms "
+            "are for one contact without such springs; use map"
+        )
     axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
     coords = {name: coordinate(name, axis) for name, axis in axes.items()}
     return xr.Dataset(limit_variables(system, r, mu), coords=coords)

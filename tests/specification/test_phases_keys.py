@@ -288,16 +288,21 @@ def test_files_of_all_kinds(command, tmp_path):
     (tmp_path / "two.toml").write_text(MAP)
     for call in (
         "map two.toml -o map.nc", "map two.toml -o map.zarr", "curves two.toml -o curves.nc",
-        "boundaries two.toml -o limits.nc", "response two.toml --r 1.2 --beta 0.1 -o motion.nc",
+        "boundaries b1.toml -o limits.nc", "response two.toml --r 1.2 --beta 0.1 -o motion.nc",
     ):  # fmt: skip
-        assert command(call)[0] == 0
+        status, error = command(call)
+        assert status == 0, error
     for name in ("map.nc", "map.zarr", "curves.nc", "limits.nc", "motion.nc"):
-        assert command(f"info {name}") == (0, "")
+        status, error = command(f"info {name}")
+        assert (status, error) == (0, "")
     for name in ("map.nc", "curves.nc", "motion.nc"):
-        assert command(f"plot {name} -o {name}.png")[0] == 0
-    assert command("plot map.nc --quantity open_fraction --at contact=1 -o open.png")[0] == 0
+        status, error = command(f"plot {name} -o {name}.png")
+        assert status == 0, error
+    status, error = command("plot map.nc --quantity open_fraction --at contact=1 -o open.png")
+    assert status == 0, error
     whole, stored = fm.open("map.nc"), fm.open("map.zarr")
-    for name in whole.variables:
+    assert all(str(name).endswith("_N") for name in set(whole.variables) - set(stored.variables))
+    for name in set(whole.variables) & set(stored.variables):
         np.testing.assert_array_equal(stored[name].values, whole[name].values)
     assert whole["spring_name"].values.tolist() == ["spring 2"]
     np.testing.assert_allclose(whole["spring_force_max_N"], 4.0 * whole["spring_force_max"])
@@ -306,4 +311,12 @@ def test_files_of_all_kinds(command, tmp_path):
     assert np.isnan(motion["normal_force"].values[1]).all()
     np.testing.assert_array_equal(motion["open"].values[0] == 1, motion["normal_force"].values[0] == 0.0)
     assert motion["spring_force"].dims == ("spring", "tau")
-    assert fm.open("limits.nc").sizes["r"] == 2
+    assert "beta_noslip" in fm.open("limits.nc")
+
+
+def test_structures_given_by_modes_are_refused():
+    own = {"length": 1.0, "bending_stiffness": 1.0, "mass_per_length": 1.0}
+    beam = fm.Beam(ends="clamped-free", points={"tip": 1.0}, modes=3, **own)
+    springs = [{"masses": "tip", **GAP}]
+    with pytest.raises(fm.InputError, match=r"cannot use springs or contacts.*with modes"):
+        fm.System(modes=beam, contact_masses=["tip"], load_mass="tip", springs=springs)

@@ -58,11 +58,11 @@ class Cycle(NamedTuple):
         """Times at which the steps begin."""
         return self.steps.begins
 
-    def displacements(self, tau: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Displacements of the masses (n, T), or their derivatives by tau, of a motion that repeats."""
+    def displacements(self, tau: np.ndarray, order: int = 0, row: int | slice = slice(None)) -> np.ndarray:
+        """Displacements of the masses, or with `order` 1 their derivatives by tau; of one row or all."""
         length = 2.0 * np.pi * self.found.averaged
         found = at_times(self.steps, self.modal.squares.size, np.mod(tau - SECTION, length))
-        return np.asarray(self.modal.phi @ (found.rate if derivative else found.q))
+        return np.asarray(self.modal.phi[row] @ (found.rate if order else found.q))
 
     def points(self, highest: int) -> Points:
         """The motion at Gauss points that are dense enough for harmonics up to `highest`."""

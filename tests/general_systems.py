@@ -101,3 +101,23 @@ def vector(contact, n):
     if kind == "masses":
         w[masses[0] - 1] = -1.0
     return w
+
+
+def frame(storeys, friction=None, stiffness=None, zeta=0.03):
+    """A frame of equal storeys with a damper in each, loaded at the top.
+
+    friction : ratios of the dampers, from the ground up; default: 1 to 0.4
+    stiffness : of their springs; default: rigid
+    """
+    ratios = np.linspace(1.0, 0.4, storeys) if friction is None else np.broadcast_to(friction, storeys)
+    contacts = [
+        fm.Contact(
+            "between-masses" if k else "fixed-wall", (k, k + 1) if k else 1, ratio=float(ratios[k]),
+            stiffness=stiffness,
+        )
+        for k in range(storeys)
+    ]  # fmt: skip
+    ones = [1.0] * storeys
+    return fm.System(
+        contacts=contacts, mass_ratios=ones, stiffness_ratios=ones, damping_ratios=zeta, load_mass=storeys
+    )

@@ -814,6 +814,7 @@ HISTORY_VARIABLES = {
     "v": Label(np.float64, "velocity of the masses, dx/dtau, over P/k1 (Y)", ("dof", "tau")),
     "z": Label(np.float64, "motion in the contact, over P/k1 (Y)", ("tau",)),
     "friction": Label(np.float64, "friction force against the motion in the contact, over P", ("tau",)),
+    "friction_on_mass": Label(np.float64, "sum of the friction forces on a mass, over P", ("dof", "tau")),
     "direction": Label(np.int8, "direction of the motion in the contact", ("tau",), _SENSES),
     "event_tau": Label(
         np.float64, "excitation phase at which a slide or a stop begins", ("event",), least=0.0
@@ -893,7 +894,7 @@ MEASURES = {
         "beta_lim", "beta_lim_modal", "beta_stick", "sliding_limit", "beta_lim_high", "beta_stick_high",
         "peak_threshold", "friction_harmonic", "transmitted_force", "transmitted_first_harmonic", "friction",
         "beta_stick_contact", "beta_noslip", "no_stop_begin", "no_stop_end", "border_beta",
-        "base_force",
+        "base_force", "friction_on_mass",
         "normal_force_min", "normal_force_max", "spring_force_max", "normal_force", "spring_force",
     ),
     "work": ("work_friction", "work_input", "work_damping", "work_wall"),

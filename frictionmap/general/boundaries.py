@@ -11,6 +11,7 @@ from ..jobs import Watch
 from ..model.settings import Start
 from ..model.system import System
 from .held import belt_limit, least_static_friction, stick_scales
+from .loops import loop_stick_scales, refuse_further_loops
 from .no_stop import find_intervals, no_intervals
 from .problem import ModalSystem, general_of, is_symmetric
 
@@ -109,6 +110,22 @@ def _one_way_limit(system: System, r: np.ndarray) -> np.ndarray:
     return np.full(r.size, np.nan) if general_of(system).has_law else belt_limit(system, r)
 
 
+def _loop_boundaries(system: System, r: np.ndarray, mu: np.ndarray, intervals: int) -> Boundaries:
+    """Boundaries of contacts that close loops: permanent sticking of all."""
+    refuse_further_loops(general_of(system), mu)
+    none = no_intervals((mu.size, r.size, intervals))
+    return Boundaries(
+        loop_stick_scales(system, r, mu),
+        np.full((mu.size, r.size, general_of(system).count), np.nan),
+        np.full((mu.size, r.size), np.nan),
+        none.begins,
+        none.ends,
+        np.full(r.size, np.nan),
+        none.kind,
+        none.contact,
+    )
+
+
 def find_boundaries(
     system: System, r: np.ndarray, mu: np.ndarray, threads: int | None = None, watch: Watch | None = None,
     intervals: int = INTERVALS,
@@ -120,6 +137,8 @@ def find_boundaries(
     intervals : number of intervals without stops that are looked for, from beta = 0 up
     """
     general = general_of(system)
+    if general.loop:
+        return _loop_boundaries(system, r, mu, intervals)
     needed = least_static_friction(system, r)
     by_contact = stick_scales(general, needed, mu)
     stick = by_contact.max(axis=2)

@@ -4,6 +4,7 @@ import numpy as np
 
 from .._kernels.general.problem import SECTION
 from ..model.system import System
+from .loops import undetermined_forces
 from .outputs import output_values
 from .problem import general_of, static_offset
 from .steps import Steps
@@ -43,6 +44,9 @@ def harmonic_values(system: System, steps: Steps, highest: int) -> dict[str, np.
     z, f = _contact_harmonics(system, steps, x, highest), steps.harmonics("f", highest)
     x[:, 0] += offset_x
     z[:, 0] += offset_z
+    general = general_of(system)
+    if general.loop:
+        f[undetermined_forces(general.vectors.T, steps.senses == 0).any(axis=0)] = _UNKNOWN
     phasors = {"displacement_harmonic": x, "contact_harmonic": z, "friction_harmonic": f}
     if steps.period and steps.drifts:  # forces repeat, and displacements do not
         unknown = {name: np.full_like(values, _UNKNOWN) for name, values in phasors.items()}

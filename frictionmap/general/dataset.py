@@ -59,7 +59,7 @@ def boundary_variables(system: System, limits: Boundaries) -> dict[str, xr.Varia
         if general.elastic.all():
             return none
         return none | {"beta_stick": label_variable("beta_stick", limits.beta_stick)}
-    if general.has_law:
+    if general.has_law or general.loop:
         return {"beta_stick": label_variable("beta_stick", limits.beta_stick)}
     found = {
         "beta_lim": limits.beta_lim,

@@ -65,6 +65,28 @@ def held_forces(system: System, r: np.ndarray) -> tuple[dict[int, np.ndarray], d
     return held_forces_of(system, r, np.arange(general.count))
 
 
+def possible_forces(system: System, r: np.ndarray) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:
+    """Forces and displacements as of `held_forces`; in contacts that close loops, forces that hold them."""
+    general = general_of(system)
+    if not general.loop:
+        return held_forces(system, r)
+    held = np.array(independent_contacts(general.vectors.T))
+    forces, motions = held_forces_of(system, r, held)
+    found = {n: np.zeros((r.size, general.count), dtype=complex) for n in forces}
+    for n, force in forces.items():
+        found[n][:, held] = force
+    return found, motions
+
+
+def independent_contacts(w: np.ndarray) -> list[int]:
+    """Contacts with linearly independent vectors that span those of all, in order; w (n, N)."""
+    found: list[int] = []
+    for j in range(w.shape[1]):
+        if np.linalg.matrix_rank(w[:, [*found, j]], tol=_SPAN) > len(found):
+            found.append(j)
+    return found
+
+
 def held_forces_of(
     system: System, r: np.ndarray, which: np.ndarray
 ) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:
@@ -116,7 +138,7 @@ def held_ranges(system: System, r: np.ndarray, further: bool = False) -> tuple[n
     Infinite at a resonance; 0 in rigid contacts.  With `further` also what else is observed, see `observed`.
     """
     general = general_of(system)
-    motions = held_displacements(system, r)
+    motions = possible_forces(system, r)[1] if general.loop else held_displacements(system, r)
     orders = np.array(list(motions), dtype=float)
     x = np.stack(list(motions.values()), axis=-1)  # (n_r, n, H)
     more = [observed_phasors(system, n, r, one) for n, one in motions.items()] if further else []

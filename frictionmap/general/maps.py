@@ -64,7 +64,7 @@ def solve_cells(
     mu, r = axes["mu"], axes["r"]
     beta = np.tile(axes["beta"], (r.size, 1)) if axes["beta"].ndim == 1 else axes["beta"]
     many = beta.shape[1]
-    problem, modal = problem_of(system, r, float(beta.max()))
+    problem, modal = problem_of(system, r, float(beta.max()), loops=True)
     general = general_of(system)
     kinetic, static = friction_lines(system, mu)
     equal = (static == kinetic).all(axis=(1, 2))
@@ -74,7 +74,8 @@ def solve_cells(
     sticks_from = [np.searchsorted(beta[i], beta_stick[:, i]) for i in range(r.size)]
     stuck_from = np.where(proved[:, np.newaxis], np.stack(sticks_from, axis=1), many)
     starts = initial_states(system, problem, modal, solver.start)
-    settled = places and not general.free  # the place of a free structure is arbitrary
+    # the place of a free structure is arbitrary; that of contacts that close a loop is not looked for
+    settled = places and not general.free and not general.loop
     grid = Grid(beta, kinetic, static, stuck_from, starts, settled, float(solver.cycles), solver.tolerance)
     outputs = np.empty((0, modal.phi.shape[1]))
     if masses or further or has_residual(system):

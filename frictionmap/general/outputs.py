@@ -183,6 +183,9 @@ def output_values(name: str, system: System, cells: Cells) -> np.ndarray:
     ends = np.cumsum((count, system.n, system.n, system.n))
     parts = zip(np.split(low, ends, axis=-1), np.split(high, ends, axis=-1), strict=True)
     values = output.values(Solved(cells, laws, rests, *parts))
+    if (general.loop and output.placed == _ALL) or (name == "contact_amplitude" and general.loop):
+        some = rests.any(axis=-1)
+        values = np.where(some.reshape(*some.shape, *[1] * (values.ndim - some.ndim)), np.nan, values)
     if output.free:
         values = np.where(carried_contacts(system), values, np.nan)
     if name in ("contact_midpoint", "midpoint") and system.rigid_modes:  # of motions at any place

@@ -194,12 +194,12 @@ def springs(general: ContactSystem) -> np.ndarray:
 
 
 def refuse_loop(general: ContactSystem) -> None:
-    """Refuse contacts that close a loop, of which only the boundary to permanent sticking is determined."""
+    """Refuse contacts that close a loop where these are not offered."""
     if general.loop:
         raise InputError(
             "cannot use",
             "contacts",
-            f"{general.loop} together: {LOOP}; leave one out, or find beta_stick with boundaries",
+            f"{general.loop} together: {LOOP}; leave one out, or use map, response or boundaries",
         )
 
 
@@ -263,13 +263,17 @@ def law_damping(general: ContactSystem, beta: float) -> np.ndarray:
     return np.array(slopes) * np.array([group.friction(beta, 1.0)[0] for group in general.groups])
 
 
-def problem_of(system: System, r: np.ndarray, beta: float | None = None) -> tuple[Problem, ModalSystem]:
+def problem_of(
+    system: System, r: np.ndarray, beta: float | None = None, loops: bool = False
+) -> tuple[Problem, ModalSystem]:
     """Build the arrays of a system over r; values at r = 0 are placeholders.
 
     beta : the largest one; needed only where friction depends on the speed, and is damping by that
+    loops : whether contacts that close loops are offered
     """
     general = general_of(system)
-    refuse_loop(general)
+    if not loops:
+        refuse_loop(general)
     modal = modal_system(system)
     channels, orders = channels_of(system, modal), general.orders
     phasors = _phasors(channels, orders, r)
@@ -295,5 +299,6 @@ def problem_of(system: System, r: np.ndarray, beta: float | None = None) -> tupl
         np.ascontiguousarray(np.array([channel.normal for channel in channels]).T),
         spring, belt, tied, np.array(orders, dtype=float), r, phasors,
         rates, np.where(sizes > 0.0, sizes, 1.0), is_symmetric(general), law_of(system, modal),
+        bool(general.loop),
     )  # fmt: skip
     return problem, modal

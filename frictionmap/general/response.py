@@ -22,6 +22,7 @@ from .dataset import (
     refuse_static,
     segments_of,
 )
+from .loops import undetermined_forces
 from .observed import wants_further
 from .outputs import TABLE, is_wanted, output_values
 from .problem import general_of, static_offset
@@ -39,6 +40,10 @@ def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarr
     z = (g if general.points is None else general.points.vectors @ x) + offset_z[:, np.newaxis]
     friction = steps.at("f", tau)
     k, _ = steps.places(tau)
+    sums = {}
+    if general.loop:
+        sums["friction_on_mass"] = -general.vectors.T @ friction
+        friction = np.where(undetermined_forces(general.vectors.T, steps.senses == 0)[k].T, np.nan, friction)
     found = {
         "x": x + offset_x[:, np.newaxis],
         "v": v,
@@ -46,6 +51,7 @@ def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarr
         "friction": friction,
         "direction": steps.senses[k].T.astype(np.int8),
     }
+    found |= sums
     if system.load is None and not general.base:
         found["load"] = load_over(general, tau)
     kt = steps.problem.spring[:, np.newaxis]

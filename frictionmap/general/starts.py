@@ -13,7 +13,7 @@ from .._kernels.general.problem import Problem
 from ..model.settings import Start
 from ..model.system import System
 from .boundaries import load_velocities, moving_alone, rest_states
-from .held import held_forces
+from .held import possible_forces
 from .problem import ModalSystem, general_of
 
 #: Loads that differ by this share are equal: far above the rounding error of a solution of a few equations.
@@ -52,7 +52,7 @@ def _loaded_contact(system: System, modal: ModalSystem, r: np.ndarray) -> tuple[
 
     At a resonance of the held structure the load has no phase; it counts as one in phase with cos(tau).
     """
-    forces, _ = held_forces(system, r)
+    forces, _ = possible_forces(system, r)
     loads = np.stack(list(forces.values()), axis=-1)  # (n_r, N, H)
     rows = np.arange(r.size)
     sizes = np.abs(loads).max(axis=-1)

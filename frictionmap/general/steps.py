@@ -129,6 +129,8 @@ class Steps:
 
 def _rests(system: System, problem: Problem, i: int, friction: Friction) -> bool:
     """Whether all contacts stick permanently, by closed form."""
+    if problem.loops:  # the motion decides
+        return False
     needed = least_static_friction(system, problem.r[i : i + 1])[0]
     return bool((friction.static >= needed).all())
 
@@ -170,7 +172,7 @@ def steps_of(
     NoSteadyState
         None was found.
     """
-    problem, modal = problem_of(system, np.array([r]), beta)
+    problem, modal = problem_of(system, np.array([r]), beta, loops=True)
     return cell_steps(system, problem, modal, 0, beta, mu, solver, further)
 
 

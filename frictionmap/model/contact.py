@@ -19,7 +19,7 @@ CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 WALLS = ("wall_velocity", "wall_speed")
 
 #: Contacts of a system at most, each element of a bank as one.
-MOST_CONTACTS = 8
+MOST_CONTACTS = 64
 
 
 def without_wall(kind: str, name: str, given: object) -> InputError:

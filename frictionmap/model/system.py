@@ -222,7 +222,7 @@ class System(Shown):
         changes linear responses, with the contact free or held, by no more than this relative error in the
         range of r.
     contacts : sequence of Contact or mapping, optional
-        Instead of contact and contact_masses: 1 to 8 contacts, each with its own friction.
+        Instead of contact and contact_masses: 1 to 64 contacts, each with its own friction.
     contact_stiffness : float or sequence of float, optional
         Stiffness k_t over k_1 [-], > 0, of a spring in series with the contact; default: rigid.  Several are
         a bank of elements in parallel, as in `Contact`.

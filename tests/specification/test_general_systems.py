@@ -248,7 +248,7 @@ THREE = {"mass_ratios": [1, 1, 1], "stiffness_ratios": [1, 1, 1]}
 LOOP = [{"kind": "between-masses", "masses": list(pair)} for pair in ((1, 2), (2, 3), (1, 3))]
 REFUSED = [
     ({"contacts": []}, "contacts must be a list of contacts; got []"),
-    ({"contacts": [WALL] * 9}, "contacts must be at most 8; got 9"),
+    ({"contacts": [WALL] * 65}, "contacts must be at most 64; got 65"),
     ({"contacts": [{**WALL, "kind": "wall"}]}, "contacts[1].kind must be one of fixed-wall"),
     ({"contacts": [{**WALL, "ratio": 1, "force": 1}]}, "cannot use contacts[1].ratio with force"),
     ({"contacts": [{**WALL, "mu": 0.5}]}, "contacts[1].mu must be >= 1; got 0.5"),
@@ -263,7 +263,7 @@ REFUSED = [
     ({"contact_stiffness": -1.0}, "stiffness must be > 0; got -1"),
     ({"contact_stiffness": [1.0, 0.0]}, "contact_stiffness[1] must be > 0; got 0"),
     ({"contact_stiffness": []}, "contact_stiffness must have at least one value; got none"),
-    ({"contact_stiffness": [1.0] * 9}, "contact_stiffness must have at most 8 elements in all; got 9"),
+    ({"contact_stiffness": [1.0] * 65}, "contact_stiffness must have at most 64 elements in all; got 65"),
     ({"contacts": [{**WALL, "ratio": [1, 2]}]}, "contacts[1].ratio must be one number unless stiffness is"),
     (
         {"contacts": [{**WALL, "stiffness": [1, 2], "ratio": [1]}]},
@@ -314,13 +314,11 @@ NOT_OFFERED = [
 @pytest.mark.parametrize(
     "call",
     [
-        lambda s: fm.sweep(s, [0.5], [0.1]),
         lambda s: fm.curves(s, [0.5], [0.1]),
-        lambda s: fm.response(s, 0.5, 0.1),
         lambda s: fm.design.stuck(s, (0.4, 0.6)),
     ],
 )
-def test_motions_of_a_loop_are_refused(call):
+def test_curves_and_designs_of_a_loop_are_refused(call):
     with pytest.raises(fm.InputError, match="cannot use contacts 1, 2, 3 together: they close a loop"):
         call(fm.System(contacts=LOOP, **THREE))
 
@@ -335,12 +333,33 @@ def test_all_contacts_of_loops_are_named_and_no_others(further, named):
     contacts = [fm.Contact("between-masses", pair) for pair in pairs]
     system = fm.System(contacts=contacts, mass_ratios=[1] * 6, stiffness_ratios=[1] * 6)
     with pytest.raises(fm.InputError, match=f"cannot use contacts {named} together: they close a loop"):
-        fm.sweep(system, [0.5], [0.1])
+        fm.curves(system, [0.5], [0.1])
 
 
-def test_boundaries_of_a_loop_with_even_harmonics_are_refused():
-    with pytest.raises(fm.InputError, match=r"close a loop, .* beta_stick of a loop is found for rigid"):
-        fm.boundaries(fm.System(contacts=LOOP, load_harmonics={1: 1.0, 2: 0.2}, **THREE), [0.5])
+def test_even_harmonics_leave_the_boundary_of_a_loop_unknown():
+    ds = fm.sweep(fm.System(contacts=LOOP, load_harmonics={1: 1.0, 2: 0.2}, **THREE), [0.5], [0.1])
+    assert np.isnan(ds.beta_stick.item())
+    assert ds.status.item() == fm.regimes.RESOLVED
+
+
+@pytest.mark.parametrize(
+    ("further", "message"),
+    [
+        ([fm.Contact("fixed-wall", 1, stiffness=1.0)], "must all be rigid"),
+        ([fm.Contact("fixed-wall", 1, wall_velocity=0.1)], "without belts"),
+        ([fm.Contact("fixed-wall", 1, normal_load={2: 0.1})], "varying normal loads"),
+    ],
+)
+def test_what_else_a_system_with_a_loop_may_not_have(further, message):
+    system = fm.System(contacts=[*LOOP, *further], **THREE)
+    for call in (lambda: fm.sweep(system, [0.5], [0.1]), lambda: fm.boundaries(system, [0.5])):
+        with pytest.raises(fm.InputError, match=message):
+            call()
+
+
+def test_motions_of_a_loop_need_equal_friction():
+    with pytest.raises(fm.InputError, match=r"mu must be 1 for motions of contacts .*; got 1.2"):
+        fm.sweep(fm.System(contacts=LOOP, **THREE), [0.5], [0.1], [1.2])
 
 
 @pytest.mark.parametrize(("call", "message"), NOT_OFFERED)

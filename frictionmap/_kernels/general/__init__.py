@@ -7,6 +7,7 @@ solution of its own.  Events are located on these series, with certainty.
 =============  =====================================================================================
 module         what is in it
 =============  =====================================================================================
+keys           places of patterns in tables
 problem        a system over r, the constants of one r, the memory of a motion: arrays and their rows
 crossings      values of a series, and its first zero, with certainty
 counts         counters of a motion
@@ -14,6 +15,7 @@ laws           contact laws: phases, watched quantities, what follows an event
 row            the constants of one r and the memory of a motion, allocated and filled; series of the load
 series         series of one step: modes, forces, motion in the contacts
 pattern        which contacts slide and which are held after an event
+loops          rigid contacts that close loops: which are held, and with which forces
 events         turns, stops and slowest instants of slides
 record         extremes, works, steps and events of a steady motion
 tangent        derivatives of the motion by its state at the section

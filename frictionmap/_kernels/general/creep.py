@@ -223,6 +223,10 @@ def find_rest(problem, friction, halves, tolerance, workspace):
     """
     kept = workspace.ring.friction
     _keep(friction, kept)
+    if problem.loops:  # no single force decides whether a contact can rest: the motion does
+        row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+        status, cycles = newton(problem, row, friction, halves, tolerance, motion, memory, record)
+        return REPEATS if status == REPEATS else NO_REPEAT, cycles
     status, cycles = _settle(problem, friction, halves, tolerance, workspace)
     if status != REPEATS:
         restore_friction(friction, kept)
@@ -245,6 +249,8 @@ def find_held(problem, friction, halves, tolerance, workspace):
     row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     ring, cycles = workspace.ring, 0.0
     for share in _HELD:
+        if problem.loops:
+            break
         go_back(memory, ring, 0)
         code = go_round(problem, row, friction, 2, motion, memory, record, False)
         cycles += 1.0

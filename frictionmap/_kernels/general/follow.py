@@ -11,7 +11,16 @@ from .laws.coulomb import comes_to_rest, first_event, watched_slope
 from .laws.elastic import end_slips, rest_springs
 from .laws.kinds import has_constraint
 from .laws.speed import first_bound, has_law, is_at_speed, pass_break_point, set_segments
-from .pattern import FORCE, HOLDING, KINETIC, ORDER_MATTERS, PARTICIPATES, settle, stop_exactly
+from .loops import prepare_loops, release_in_loops, settle_contacts
+from .pattern import (
+    FORCE,
+    HOLDING,
+    KINETIC,
+    ORDER_MATTERS,
+    PARTICIPATES,
+    release_by_rates,
+    stop_exactly,
+)
 from .problem import SECTION, H, force_row, normal_row
 from .record import record_step
 from .row import set_channels
@@ -24,9 +33,9 @@ _MOST_IMMEDIATE = 200
 #: Events in an interval of the load, at most.
 _MOST_EVENTS = 1000
 
-#: Rows of the scratch after WATCHED: of every contact its sense and force before an event, the change of its
-#: force, and its normal load.  Further rows: see `record`, `events`.
-_SENSE, _BEFORE, _CHANGE, _NORMAL = 1, 3, 2, 4
+#: Rows of `Motion.event`: of every contact its sense and force before an event, the change of its force, and
+#: its normal load.
+_SENSE, _BEFORE, _CHANGE, _NORMAL = 0, 1, 2, 3
 
 FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
 
@@ -60,7 +69,7 @@ def _arrives_instead(problem, friction, motion, x, contact):
 
 
 @kernel
-def _settle(problem, row, friction, tau, motion, box, x, contact, side):
+def _settle(problem, row, friction, tau, motion, box, forces, event):
     """Change the pattern at an event at which forces jump; False if they are not determined.
 
     Parameters
@@ -68,10 +77,12 @@ def _settle(problem, row, friction, tau, motion, box, x, contact, side):
     problem, row, friction : Problem, Row, Friction
     tau : phase of the event
     motion, box : Motion, scratch of `settle`
-    x, contact, side : the event, see `next_event`
+    forces : (N,) forces before the event
+    event : see `next_event`
     """
+    x, contact, side = event
     arrived, released = (contact, -1) if side == 0 else (-1, contact)
-    if not settle(problem, row, friction, tau, motion, box, arrived, released):
+    if not settle_contacts(problem, row, friction, tau, motion, box, forces, arrived, released):
         return False
     for j in range(motion.sense.size):
         if box[PARTICIPATES, j] != 0.0:
@@ -134,7 +145,7 @@ def pass_event(problem, row, friction, tau, motion, box, counts, event, derive):
     if side == 0 and not has_constraint(problem, contact):
         contact = _arrives_instead(problem, friction, motion, x, contact)
     contacts = problem.spring.size
-    series, scratch = motion.series, motion.scratch
+    series, scratch = motion.series, motion.event
     before, forces = scratch[_SENSE], scratch[_CHANGE]
     for j in range(contacts):
         before[j] = motion.sense[j]
@@ -147,11 +158,17 @@ def pass_event(problem, row, friction, tau, motion, box, counts, event, derive):
         for j in range(contacts):
             scratch[_BEFORE, j] = forces[j]
             scratch[_NORMAL, j] = value_at(series, normal_row(problem, j), x)
-    if not settles:
+    if settles:
+        determined = _settle(problem, row, friction, tau, motion, box, forces, (x, contact, side))
+    elif problem.loops:
+        determined = release_in_loops(problem, row, friction, motion, forces, x, box)
+    else:
         change_phase(problem, friction, motion, x, contact, side)
-    elif not _settle(problem, row, friction, tau, motion, box, x, contact, side):
+        determined = release_by_rates(problem, row, friction, motion, x, before, box)
+    if not determined:
         return False
-    rest_springs(problem, friction, motion, 1 if settles else 2)
+    if not problem.loops:
+        rest_springs(problem, friction, motion, 1 if settles else 2)
     _count(problem, motion, box, before, counts)
     if settles:
         for j in range(contacts):
@@ -226,6 +243,8 @@ def prepare(problem, row, friction, motion):
     motion.clock[0] = math.nan
     for j in range(motion.idle.size):
         motion.idle[j] = False
+    if problem.loops:  # see `prepare_loops`
+        return True
     rest_springs(problem, friction, motion, 0)
     return factor_held(problem, row, motion)
 
@@ -267,6 +286,8 @@ def follow(problem, row, friction, part, motion, box, counts, record, derive):
     intervals = row.intervals[0]
     # a state that Newton's method or other states led to, with their errors
     set_channels(problem, row, SECTION + part * intervals * h, part * intervals, motion)
+    if not prepare_loops(problem, row, friction, SECTION + part * intervals * h, motion, box):
+        return UNDETERMINED
     stop_exactly(problem, row, motion)
     set_segments(problem, row, motion)
     forget_tables(problem, row, friction)
@@ -302,6 +323,8 @@ def follow_to_section(problem, row, friction, begin, motion, box, counts, record
     """
     h = row.numbers[H]
     if not prepare(problem, row, friction, motion):
+        return UNDETERMINED
+    if not prepare_loops(problem, row, friction, begin, motion, box):
         return UNDETERMINED
     parts = (SECTION if begin <= SECTION else SECTION + 2.0 * math.pi) / h - begin / h
     for k in range(int(math.ceil(parts))):

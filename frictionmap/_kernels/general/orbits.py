@@ -10,7 +10,16 @@ from .counts import MOVED
 from .follow import FOLLOWED
 from .laws.kinds import state_size
 from .problem import SIZE, is_carried
-from .return_map import fill_newton, fix_rigid, go_round, keep_places, motion_size, return_distance, take_step
+from .return_map import (
+    fill_newton,
+    fix_rigid,
+    go_round,
+    keep_places,
+    motion_size,
+    return_distance,
+    take_end,
+    take_step,
+)
 
 #: Kinds of `Steady`; AVERAGED: the motion stops and starts without returning, see `course`.
 REPEATS, NO_REPEAT, CHATTERS, UNDETERMINED, AVERAGED = 0, 1, 2, 3, 4
@@ -23,6 +32,10 @@ DRIFTS = 5
 #: rest.
 _MOST_STEPS = 12
 _LESS = 0.5
+
+#: Steps in which Newton's method may lead away from the steady state, before the events have their order in
+#: it: one for so many contacts, none for less than twice as many.
+_STRAYS = 5
 
 #: Largest step over the size of the motion, and largest motion over its size without friction: beyond, the
 #: equations are singular (an undamped resonance).
@@ -118,6 +131,8 @@ def newton(problem, row, friction, halves, tolerance, motion, memory, record):
     cycles = 0.0
     size = state_size(problem)
     drifting = missed = False
+    contacts = problem.spring.size
+    strays = contacts // _STRAYS if contacts >= 2 * _STRAYS else 0
     for _ in range(_MOST_STEPS):
         code = go_round(problem, row, friction, halves, motion, memory, record, True)
         cycles += 0.5 * halves
@@ -128,9 +143,15 @@ def newton(problem, row, friction, halves, tolerance, motion, memory, record):
         if distance == 0.0 or not distance < _LESS * last:
             if distance <= tolerance:
                 return DRIFTS if drifting else REPEATS, cycles
-            if missed or not distance < _ROUNDED:
+            if strays > 0 and not distance < _ROUNDED:
+                strays -= 1
+                if not math.isfinite(distance):  # the derivatives are those of another pattern
+                    take_end(memory)
+                    continue
+            elif missed or not distance < _ROUNDED:
                 return NO_REPEAT, cycles
-            missed = True
+            else:
+                missed = True
         last = distance
         fill_newton(problem, row, halves, motion, memory)
         if not solve_linear(memory.matrix, memory.right, size):

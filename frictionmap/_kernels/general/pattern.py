@@ -8,33 +8,43 @@ friction lets go, until none is above it.
 
 import math
 
-import numpy as np
-
 from ..compiler import kernel
+from .crossings import slope_at
 from .laws.coulomb import TOGETHER
 from .laws.kinds import has_constraint, is_constrained, keeps_force
-from .laws.speed import factor_at, set_segments
-from .problem import F, H, P, Q, force_row, slide_velocity
+from .laws.speed import factor_at
+from .problem import F, H, P, Q, force_row, normal_row, slide_velocity
 from .row import set_channels
 from .series import factor_held, solve_held
 
 #: Loads within this share of the largest excess let go together.
 _TIED = 1e-9
 
-_MOST_PIVOTS = 400
+#: Share of a load or an acceleration that rounding errors may be, and patterns of the box law after which it
+#: counts: it takes fewer where nothing is tied.
+_TIE, _TIED_FROM = 1e-12, 30
+
+#: Rounds of the box law in which all that is wrong is flipped though there is not less of it than before.
+_PATIENCE = 3
+
+#: Patterns of the box law that are tried by blocks, at most, and altogether: 64 contacts take some 7 from any
+#: start, and some 190 one by one.
+_MOST_BLOCKS, _MOST_PIVOTS = 100, 2000
 
 #: Rows of the scratch of `settle`: accelerations in the contacts without forces of the participants; forces
 #: and accelerations of the participants; 1 for those that take part; kinetic friction; 1 for those that may
 #: slide; static friction; forces that would hold all participants; 1 where a contact would do otherwise if
-#: all overloaded ones were released at once; sense.
-FREE, FORCE, ACCELERATION, PARTICIPATES, KINETIC, MAY_SLIDE, STATIC, HOLDING, ORDER_MATTERS, _SENSE = range(
-    10
-)
-BOX_ROWS = 10
+#: all overloaded ones were released at once; sense; the only side of its range that a force can leave, or 0;
+#: size of the terms of ACCELERATION; limits of a force, see `loops`.
+(
+    FREE, FORCE, ACCELERATION, PARTICIPATES, KINETIC, MAY_SLIDE, STATIC, HOLDING, ORDER_MATTERS, _SENSE,
+    _SIDE, TERMS_SIZE, LOWER, UPPER,
+) = range(14)  # fmt: skip
+BOX_ROWS = 14
 
 
 @kernel
-def _free_accelerations(problem, row, motion, box):
+def fill_free_accelerations(problem, row, motion, box):
     """Fill the accelerations FREE in the contacts with no force from those that take part."""
     modes, channels = problem.push.shape
     contacts = problem.spring.size
@@ -82,34 +92,89 @@ def _forces_of_choice(problem, row, motion, box):
         box[ACCELERATION, j] = 0.0
         if box[PARTICIPATES, j] != 0.0 and motion.sense[j] != 0:
             box[ACCELERATION, j] = box[FREE, j]
+            box[TERMS_SIZE, j] = abs(box[FREE, j])
             for other in range(contacts):
                 if box[PARTICIPATES, other] != 0.0:
-                    box[ACCELERATION, j] -= row.mobility[j, other] * box[FORCE, other]
+                    part = row.mobility[j, other] * box[FORCE, other]
+                    box[ACCELERATION, j] -= part
+                    box[TERMS_SIZE, j] += abs(part)
     return True
 
 
 @kernel
-def _box_law(problem, row, motion, box):
-    """Flip the first contact that is wrong, of those that may slide, until none is."""
-    contacts = motion.sense.size
-    for _ in range(_MOST_PIVOTS):
-        if not _forces_of_choice(problem, row, motion, box):
-            return False
-        flipped = False
-        for j in range(contacts):
-            if box[PARTICIPATES, j] == 0.0 or box[MAY_SLIDE, j] == 0.0:
-                continue
-            if motion.sense[j] == 0 and abs(box[FORCE, j]) > box[KINETIC, j]:
-                motion.sense[j] = 1 if box[FORCE, j] > 0.0 else -1
-                flipped = True
-            elif motion.sense[j] != 0 and motion.sense[j] * box[ACCELERATION, j] < 0.0:
-                motion.sense[j] = 0
-                flipped = True
-            if flipped:
-                break
-        if not flipped:
-            return True
-    return False
+def _is_wrong(motion, box, j, tie):
+    """Whether a contact that may slide is held beyond its friction, or slides against its acceleration.
+
+    tie : share of a load or an acceleration that is none
+    """
+    if box[PARTICIPATES, j] == 0.0 or box[MAY_SLIDE, j] == 0.0:
+        return False
+    if motion.sense[j] != 0:
+        return motion.sense[j] * box[ACCELERATION, j] < tie * box[TERMS_SIZE, j]
+    load = abs(box[FORCE, j]) if box[_SIDE, j] == 0.0 else box[_SIDE, j] * box[FORCE, j]
+    return load > box[KINETIC, j] + tie * abs(box[KINETIC, j])
+
+
+@kernel
+def _flip(motion, box, j):
+    """Hold a contact that slides, or let a held one slide in the sense of its load."""
+    if motion.sense[j] != 0:
+        motion.sense[j] = 0
+    elif box[_SIDE, j] != 0.0:
+        motion.sense[j] = int(box[_SIDE, j])
+    else:
+        motion.sense[j] = 1 if box[FORCE, j] > 0.0 else -1
+
+
+@kernel
+def _wrong_ones(motion, box, tie):
+    """How many contacts are wrong, the first and the last of them; `tie`: see `_is_wrong`."""
+    count, first, last = 0, -1, -1
+    for j in range(motion.sense.size):
+        if _is_wrong(motion, box, j, tie):
+            count += 1
+            last = j
+            if first < 0:
+                first = j
+    return count, first, last
+
+
+@kernel
+def box_law(problem, row, motion, box, solved):
+    """Flip contacts that are wrong, of those that may slide, until none is.
+
+    All of them are flipped at once, as long as there are fewer from time to time, else the last one alone.
+    Contacts in a row reach their limits together: rounding errors decide which of them are wrong, without an
+    end, until what they can be counts as nothing.  Should that not help, the first one alone is flipped.
+
+    Parameters
+    ----------
+    problem, row, motion, box : see `settle`; the pattern in the motion is where it begins
+    solved : whether FORCE and ACCELERATION are those of this pattern
+
+    Returns
+    -------
+    int : patterns that were tried; 0 if the contacts do not determine their forces
+    """
+    fewest, patience = motion.sense.size + 1, _PATIENCE
+    for pivot in range(_MOST_PIVOTS):
+        if not (solved and pivot == 0) and not _forces_of_choice(problem, row, motion, box):
+            return 0
+        tie = _TIE if pivot >= _TIED_FROM else 0.0
+        count, first, last = _wrong_ones(motion, box, tie)
+        if count == 0:
+            return pivot + 1
+        patience = _PATIENCE if count < fewest else patience - 1
+        fewest = min(fewest, count)
+        if pivot >= _MOST_BLOCKS:
+            _flip(motion, box, first)
+        elif patience < 0:
+            _flip(motion, box, last)
+        else:
+            for j in range(motion.sense.size):
+                if _is_wrong(motion, box, j, tie):
+                    _flip(motion, box, j)
+    return 0
 
 
 @kernel
@@ -157,7 +222,7 @@ def _release(problem, row, motion, box, released, at_once):
         box[MAY_SLIDE, released] = 1.0
         motion.sense[released] = 1 if box[FORCE, released] > 0.0 else -1
         _release_loads(motion, box, 1.0 - _TIED)
-    if not _box_law(problem, row, motion, box):
+    if box_law(problem, row, motion, box, released < 0) == 0:
         return False, False
     several = False
     for _ in range(motion.sense.size):
@@ -166,7 +231,7 @@ def _release(problem, row, motion, box, released, at_once):
             break
         several = several or least < worst * (1.0 - _TIED)
         _release_loads(motion, box, (least if at_once else worst) * (1.0 - _TIED))
-        if not _box_law(problem, row, motion, box):
+        if box_law(problem, row, motion, box, False) == 0:
             return False, several
     return True, several
 
@@ -178,6 +243,7 @@ def _hold_participants(motion, box):
         if box[PARTICIPATES, j] != 0.0:
             motion.sense[j] = 0
         box[MAY_SLIDE, j] = 1.0 if box[STATIC, j] <= box[KINETIC, j] else 0.0
+        box[_SIDE, j] = 0.0
 
 
 @kernel
@@ -199,8 +265,8 @@ def _mark_order(problem, row, motion, box, released):
 
 
 @kernel
-def _arrives_too(problem, row, motion, box, j):
-    """Whether a slider reaches velocity zero together with the contact whose arrival was found."""
+def is_still(problem, row, motion, j):
+    """Whether the velocity in a contact is zero, up to rounding errors."""
     modes, channels = problem.push.shape
     series = motion.series
     w = -row.numbers[H] * problem.belt[j]
@@ -211,7 +277,13 @@ def _arrives_too(problem, row, motion, box, j):
         size += abs(part)
     for d in range(channels):
         w -= problem.base[j, d] * series[modes + d, 1]
-    return abs(w) <= TOGETHER * size and motion.sense[j] * box[FREE, j] <= 0.0
+    return abs(w) <= TOGETHER * size
+
+
+@kernel
+def _arrives_too(problem, row, motion, box, j):
+    """Whether a slider reaches velocity zero together with the contact whose arrival was found."""
+    return is_still(problem, row, motion, j) and motion.sense[j] * box[FREE, j] <= 0.0
 
 
 @kernel
@@ -228,7 +300,7 @@ def stop_exactly(problem, row, motion):
 
 
 @kernel
-def _take_part(problem, row, friction, tau, motion, box):
+def take_part(problem, row, friction, tau, motion, box):
     """Decide which contacts take part in what follows an event, and their friction there."""
     contacts = motion.sense.size
     series = motion.series
@@ -247,7 +319,7 @@ def _take_part(problem, row, friction, tau, motion, box):
             series[force_row(problem, j), 0] *= factor_at(problem, row, motion, j)
         if keeps_force(problem, motion, j):
             series[force_row(problem, j), 0] = motion.state[F, j]
-    _free_accelerations(problem, row, motion, box)
+    fill_free_accelerations(problem, row, motion, box)
     for j in range(contacts):
         if (
             box[PARTICIPATES, j] == 0.0
@@ -275,10 +347,10 @@ def settle(problem, row, friction, tau, motion, box, arrived, released):
     bool : False if the contacts do not determine their forces
     """
     contacts = motion.sense.size
-    _take_part(problem, row, friction, tau, motion, box)
+    take_part(problem, row, friction, tau, motion, box)
     if arrived >= 0:
         box[PARTICIPATES, arrived] = 1.0
-    _free_accelerations(problem, row, motion, box)
+    fill_free_accelerations(problem, row, motion, box)
     _hold_participants(motion, box)
     if not _forces_of_choice(problem, row, motion, box):
         return False
@@ -293,21 +365,44 @@ def settle(problem, row, friction, tau, motion, box, arrived, released):
 
 
 @kernel
-def begin(problem, row, friction, tau, motion, box):
-    """Decide the pattern of a state at the start, from its velocities; elastic contacts begin at rest, their
-    springs unloaded.
+def release_by_rates(problem, row, friction, motion, x, before, box):
+    """Hold those contacts again, of several that let go at one instant without a drop of force, that stay.
+
+    Where a contact lets go, the rates of all other forces jump.  Each of them stays at its limit with a rate
+    that leads inside, or goes with the third derivative of its displacement: the box law of the rates.
+
+    Parameters
+    ----------
+    problem, row, friction, motion : Problem, Row, Friction, Motion; the pattern is that of after the event
+    x : place of the event in the step
+    before : (N,) the pattern before it
+    box : scratch of `settle`
+
+    Returns
+    -------
+    bool : False if the contacts do not determine their forces
     """
-    motion.clock[0] = math.nan
-    set_channels(problem, row, tau, -1, motion)
-    for j in range(motion.sense.size):
-        w = slide_velocity(problem, row, motion, j)
-        motion.fresh[j] = 0
-        motion.sense[j] = int(np.sign(w)) if has_constraint(problem, j) else 0
-    set_segments(problem, row, motion)
-    if not settle(problem, row, friction, tau, motion, box, -1, -1):
+    contacts = motion.sense.size
+    series, count = motion.series, 0
+    for j in range(contacts):
+        held = before[j] == 0.0 and has_constraint(problem, j)
+        box[PARTICIPATES, j] = 1.0 if held else 0.0
+        goes = held and motion.sense[j] != 0 and friction.static[j] > 0.0  # without friction none stays
+        box[MAY_SLIDE, j] = 1.0 if goes else 0.0
+        box[_SIDE, j] = motion.sense[j]
+        count += box[MAY_SLIDE, j] != 0.0
+    if count < 2:
+        return True
+    for j in range(contacts):
+        box[KINETIC, j] = friction.static[j] * slope_at(series, normal_row(problem, j), x)
+        box[FREE, j] = 0.0
+        for other in range(contacts):
+            if box[PARTICIPATES, other] != 0.0:
+                rate = slope_at(series, force_row(problem, other), x)
+                box[FREE, j] += row.mobility[j, other] * rate
+    if box_law(problem, row, motion, box, False) == 0:
         return False
-    for j in range(motion.sense.size):
-        if box[PARTICIPATES, j] != 0.0 and motion.sense[j] != 0:
-            motion.fresh[j] = 1
-            motion.segment[j] = 0
+    for j in range(contacts):
+        if box[MAY_SLIDE, j] != 0.0 and motion.sense[j] == 0:
+            motion.fresh[j] = 0
     return True

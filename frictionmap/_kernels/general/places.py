@@ -18,6 +18,7 @@ from .creep import WITHOUT_LIMIT, keep_friction, restore_friction
 from .follow import FOLLOWED
 from .laws.kinds import has_force, holding_stiffness
 from .laws.speed import has_law, steepest, velocity_unit
+from .loops import factor_independent
 from .orbits import NO_REPEAT, REPEATS, newton
 from .pattern import stop_exactly
 from .problem import SECTION, F, H, P, Q, R, padded, varies
@@ -119,7 +120,7 @@ def stop_contacts(problem, row, motion, memory):
     put_state(memory.start, memory.senses, motion)
     motion.clock[0] = math.nan
     set_channels(problem, row, SECTION, 0, motion)
-    if not factor_held(problem, row, motion):
+    if not factor_independent(problem, row, motion):
         return False
     stop_exactly(problem, row, motion)
     take_state(motion, memory.start, memory.senses, 1.0)

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES
+from .keys import Keys
 
 #: Largest angle of the fastest part of the motion in one interval of the load [rad], a third of a turn ...
 TURN = 2.1
@@ -93,6 +94,7 @@ class Problem(NamedTuple):
     sizes: np.ndarray  # (n_r,) displacement of the modes that a load at this r can be expected to cause
     symmetric: bool  # L(tau + pi) = -L(tau), nothing else breaks the mirror symmetry
     law: Law = FLAT
+    loops: bool = False  # whether rigid contacts close loops
 
 
 class Parts(NamedTuple):
@@ -137,13 +139,14 @@ class Row(NamedTuple):
     sines: np.ndarray  # (H, WIDTH) series of sin(n h x)
     phasors: np.ndarray  # (2, D, H)
     loads: np.ndarray  # (2 K D, WIDTH) series of the channels in every interval; none where there are many
-    patterns: np.ndarray  # (P,) int: pattern of every place in the tables below, plus 1; 0: none yet
-    segments: np.ndarray  # (P, N) int: the same contact by contact where friction has segments, see `tangent`
+    patterns: np.ndarray  # (P,) int: number of the pattern of every place in the tables below; 0: none yet
     columns: np.ndarray  # (P, LONG, m, S) series of the modes by the state; size = 2 m + N, or 2 m if rigid
     onward: np.ndarray  # (P, size, S) the state at the end of the interval by that at its beginning
     grips: np.ndarray  # (P, N, S) forces of rigid contacts that are held, by the state
     parts: Parts
     kinetic: np.ndarray  # (N,) kinetic friction of the tables where they depend on it, see `follow`
+    keys: Keys  # the patterns of the places
+    visits: np.ndarray  # (P,) int: intervals begun with a pattern before its parts were filled
 
 
 class Motion(NamedTuple):
@@ -158,12 +161,13 @@ class Motion(NamedTuple):
     sense: np.ndarray  # (N,) int: 1, -1 sliding up, down; 0 held
     fresh: np.ndarray  # (N,) int: leading coefficients of the watched series that are zero by definition; of
     # a spring at its limit with the sign of that
-    idle: np.ndarray  # (N,) bool: springs whose ends are both at rest, see `pattern.rest_springs`
+    idle: np.ndarray  # (N,) bool: springs whose ends are both at rest, see `elastic.rest_springs`; rigid
+    # contacts that others keep at rest, see `loops`
     series: np.ndarray  # (m + D + 4 N, WIDTH)
     moves: np.ndarray  # (LONG, M) the displacements of modes, term by term
     solve: np.ndarray  # (N + 1, N) factors of the mobility of held contacts; its last row is scratch
     held: np.ndarray  # (N + 1,) int: contacts held by a constraint; the last: how many
-    scratch: np.ndarray  # (8, WIDTH)
+    scratch: np.ndarray  # (8, WIDTH) series: see WATCHED, `record`, `events`
     clock: np.ndarray  # (1,) phase at which the series of the channels begin; NaN: there are none
     tangent: np.ndarray  # (size, S) derivatives of the state by that at the section
     onward: np.ndarray  # (2, size, S) derivatives over a part of an interval; scratch
@@ -172,6 +176,7 @@ class Motion(NamedTuple):
     units: np.ndarray  # (size + N,) the state, then the friction forces
     segment: np.ndarray  # (N,) int: segment of the friction law in which a contact slides
     law_damping: np.ndarray  # (N,) derivative of its force by dz/dx
+    event: np.ndarray  # (4, N) scratch of an event, see `follow`
 
 
 @kernel

@@ -10,11 +10,12 @@ from .counts import FIRST_SENSE, LAST_SENSE, MOVED, REVERSALS
 from .follow import FOLLOWED, follow, follow_to_section
 from .laws.kinds import has_force, holding_stiffness, keeps_force, state_size
 from .laws.speed import count_rows, has_law
-from .pattern import BOX_ROWS, begin
+from .loops import begin, factor_independent
+from .pattern import BOX_ROWS
 from .problem import SIZE, F, H, P, Q, is_rigid, moves_alone, padded
 from .record import NOTHING
 from .row import normal_at_section
-from .series import factor_held, solve_held
+from .series import solve_held
 from .tangent import identity
 
 #: Bits that coordinates are rounded to before a steady state is found anew.  Newton's method then takes two
@@ -417,7 +418,7 @@ def keep_places(problem, row, motion, memory, matrix, weight):
     modes, contacts = problem.push.shape[0], problem.spring.size
     for j in range(contacts):
         motion.sense[j] = 1 if memory.counts[MOVED, j] != 0.0 else 0
-    factor_held(problem, row, motion)  # as when all of them were held
+    factor_independent(problem, row, motion)  # as when all of them were held
     if _tie_rigid(problem, memory) > 0:
         _keep_free_places(problem, row, motion, memory, matrix, weight)
         return

@@ -6,14 +6,23 @@ import numpy as np
 
 from ..compiler import entry, kernel
 from ..compiler.vectors import LANES, filled, load, store
+from .keys import forget_keys, make_keys
 from .laws.contact import force_weight
 from .laws.kinds import state_size
-from .laws.speed import has_law
+from .laws.speed import has_law, key_bits
 from .problem import LOAD_TERMS, LONG, SECTION, SIZE, TERMS, TURN, WIDTH, H, Motion, Parts, R, Row, padded
 
-#: Intervals of a period whose load is kept, and patterns whose derivatives are.
+#: Intervals of a period whose load is kept.
 _KEPT_INTERVALS = 512
-_KEPT_PATTERNS = 64
+
+#: Contacts all of whose patterns are kept; of more as many as the numbers of their tables allow, at least and
+#: at most so many.
+_KEPT_WHOLE = 6
+_KEPT_NUMBERS = 1 << 25
+_LEAST_KEPT, _MOST_KEPT = 16, 256
+
+#: Patterns that are kept where friction depends on the speed.
+_KEPT_SEGMENTS = 64
 
 
 @kernel
@@ -40,11 +49,26 @@ def _make_parts(problem, kept, most):
     size = state_size(problem)
     units, loads = kept * contacts * (size + contacts), kept * most
     return Parts(
-        np.zeros((units, WIDTH)), np.zeros(units), np.zeros((kept * contacts, size)),
+        np.empty((units, WIDTH)), np.empty(units), np.empty((kept * contacts, size)),
         np.zeros(kept, np.int64), np.empty((loads * contacts, WIDTH)), np.empty(loads * contacts),
         np.empty((loads, size)), np.zeros(loads, np.int64), np.zeros(contacts),
         np.zeros((3, padded(max(modes, contacts)))),
     )  # fmt: skip
+
+
+@kernel
+def _kept_patterns(problem, most):
+    """Number of patterns whose tables are kept; `most`: intervals of a period."""
+    contacts, modes = problem.chi.shape
+    if has_law(problem):
+        return _KEPT_SEGMENTS
+    if contacts <= _KEPT_WHOLE:
+        return 1 << contacts
+    size = state_size(problem)
+    numbers = (LONG * modes + size + contacts) * padded(size)
+    numbers += WIDTH * contacts * (size + contacts) + most * (WIDTH * contacts + size)
+    kept = min(max(_KEPT_NUMBERS // numbers, _LEAST_KEPT), _MOST_KEPT)
+    return kept - kept % _LEAST_KEPT
 
 
 @entry
@@ -54,7 +78,7 @@ def make_row(problem):
     channels, harmonics = problem.push.shape[1], problem.orders.size
     width, size = padded(modes), state_size(problem)
     most = most_intervals(problem, _KEPT_INTERVALS)
-    kept = _KEPT_PATTERNS if has_law(problem) else min(1 << contacts, _KEPT_PATTERNS)
+    kept = _kept_patterns(problem, most)
     return Row(
         np.empty(3), np.zeros(2, np.int64), np.empty(modes), np.empty((modes, modes)),
         np.zeros((TERMS, width)), np.zeros((TERMS, width)), np.zeros((modes, width)),
@@ -62,10 +86,10 @@ def make_row(problem):
         np.empty((contacts, contacts)), np.zeros(contacts), np.zeros((harmonics, WIDTH)),
         np.zeros((harmonics, WIDTH)),
         np.empty((2, channels, harmonics)), np.empty((most * channels, WIDTH)), np.zeros(kept, np.int64),
-        np.zeros((kept if has_law(problem) else 0, contacts), np.int64),
         np.empty((kept, LONG, modes, padded(size))), np.empty((kept, size, padded(size))),
         np.empty((kept, contacts, padded(size))), _make_parts(problem, 1 if has_law(problem) else kept, most),
-        np.zeros(contacts),
+        np.zeros(contacts), make_keys(contacts, key_bits(problem), kept),
+        np.zeros(kept, np.int64),
     )  # fmt: skip
 
 
@@ -83,7 +107,7 @@ def make_motion(problem):
         np.zeros((LONG, width)), np.zeros((contacts + 1, contacts)), np.zeros(contacts + 1, np.int64),
         np.zeros((8, WIDTH)), np.zeros(1), np.zeros((size, rows)), np.zeros((2, size, rows)),
         np.zeros((contacts, rows)), np.zeros(rows), np.zeros(size + contacts),
-        np.zeros(contacts, np.int64), np.zeros(contacts),
+        np.zeros(contacts, np.int64), np.zeros(contacts), np.zeros((4, contacts)),
     )  # fmt: skip
 
 
@@ -176,6 +200,7 @@ def set_interval(problem, i, row, h):
                 row.mobility[a, b] += problem.chi[a, m] * row.reaction[b, m]
     for j in range(contacts):
         row.yields[j] = force_weight(problem, row, j)
+    forget_keys(row.keys)
     for k in range(row.patterns.size):
         row.patterns[k] = 0
     for k in range(row.parts.known.size):

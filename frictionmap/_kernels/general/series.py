@@ -12,7 +12,7 @@ import numpy as np
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store, total
 from .crossings import value_at
-from .laws.kinds import holding_stiffness, is_constrained, is_spring, keeps_force
+from .laws.kinds import holding_stiffness, is_constrained, is_spare, is_spring, keeps_force
 from .laws.speed import constant_factor, law_forces, set_law_damping
 from .problem import INVERSE, LONG, NEXT, TERMS, WIDTH, F, H, first_contact_row
 from .row import set_channels
@@ -91,7 +91,7 @@ def _known_forces(problem, friction, motion, first):
         size = motion.sense[j] * friction.kinetic[j] * constant_factor(problem, motion, j)
         for k in range(0, WIDTH, LANES):
             store(load(series, nu + k) * size, series, force + k)
-        if keeps_force(problem, motion, j):
+        if keeps_force(problem, motion, j) or is_spare(problem, motion, j):
             series[first + 2 * contacts + j, 0] = motion.state[F, j]
 
 

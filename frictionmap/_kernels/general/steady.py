@@ -489,7 +489,7 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
         if not unique:  # the last way was not over the whole period
             go_round(problem, row, friction, found.halves, workspace.motion, memory, record, False)
         restore_friction(friction, workspace.places.limits)
-        if find_rests(memory, workspace.places) > 0 and not is_free(problem):
+        if not problem.loops and find_rests(memory, workspace.places) > 0 and not is_free(problem):
             found = _settle(problem, friction, state, found, cycles, tolerance, workspace)
         elif unique:
             if by_tables:

@@ -8,12 +8,10 @@ before it.
 
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store
-from .laws.kinds import has_force, holding_stiffness, is_spring, keeps_force, state_size
-from .laws.speed import has_law
+from .keys import begin_key, find_key, put_digit
+from .laws.kinds import has_force, holding_stiffness, is_spare, is_spring, keeps_force, state_size
+from .laws.speed import has_law, key_bits
 from .problem import INVERSE, LONG, TERMS
-
-#: Factor that spreads patterns over their places: odd, so that each contact counts, and no power of another.
-_SPREAD = 29
 
 
 @kernel
@@ -201,45 +199,43 @@ def _fill_pattern(problem, row, motion, slot):
     _onward(problem, row, motion, slot, 1.0, row.onward, slot)
 
 
-@inner_kernel
-def _digit(motion, j):
-    """The part of a contact in a pattern where friction has segments; 0 where it is held."""
-    return motion.segment[j] + 1 if motion.sense[j] != 0 else 0
+@kernel
+def _put_key(problem, row, motion):
+    """Put the present pattern in the keys: which contacts are held, or in which segments they slide."""
+    bits = key_bits(problem)
+    begin_key(row.keys)
+    for j in range(motion.sense.size):
+        if bits == 1:
+            digit = 1 if motion.sense[j] == 0 and not is_spare(problem, motion, j) else 0
+        else:
+            digit = motion.segment[j] + 1 if motion.sense[j] != 0 else 0
+        put_digit(row.keys, bits, j, digit)
 
 
 @kernel
-def _law_slot(problem, row, motion):
-    """`pattern_slot` where friction has segments.
-
-    With many contacts the patterns exceed all whole numbers: places are kept digit by digit.
-    """
-    slot = 0
-    for j in range(motion.sense.size):
-        slot = (slot * _SPREAD + _digit(motion, j)) % row.patterns.size
-    same = row.patterns[slot] != 0
-    for j in range(motion.sense.size):
-        same = same and row.segments[slot, j] == _digit(motion, j)
-    if not same:
-        _fill_pattern(problem, row, motion, slot)
-        row.patterns[slot] = 1
-        for j in range(motion.sense.size):
-            row.segments[slot, j] = _digit(motion, j)
+def find_slot(problem, row, motion):
+    """Place of the present pattern in the tables of the row, which may not be filled yet."""
+    _put_key(problem, row, motion)
+    direct = key_bits(problem) == 1 and motion.sense.size < 32 and 1 << motion.sense.size <= row.patterns.size
+    slot, new = find_key(row.keys, direct)
+    if new:
+        row.patterns[slot] = row.visits[slot] = 0
     return slot
+
+
+@kernel
+def fill_slot(problem, row, motion, slot):
+    """Fill the tables of the present pattern, unless they are."""
+    if row.patterns[slot] == 0:
+        _fill_pattern(problem, row, motion, slot)
+        row.patterns[slot] = row.keys.used[row.patterns.size]
 
 
 @kernel
 def pattern_slot(problem, row, motion):
     """Place of the present pattern in the tables of the row, filled if it is new there."""
-    if has_law(problem):
-        return _law_slot(problem, row, motion)
-    pattern = 0
-    for j in range(motion.sense.size):
-        if motion.sense[j] == 0:
-            pattern += 1 << j
-    slot = pattern % row.patterns.size
-    if row.patterns[slot] != pattern + 1:
-        _fill_pattern(problem, row, motion, slot)
-        row.patterns[slot] = pattern + 1
+    slot = find_slot(problem, row, motion)
+    fill_slot(problem, row, motion, slot)
     return slot
 
 

@@ -70,6 +70,9 @@ _MOST_SETS, _MOST_NUMBERS = 64, 1 << 22
 #: Error of a cubic over the interval by its fourth derivative.
 _HERMITE = 1.0 / 384.0
 
+#: Contacts of a system with tables, at most: a set of them is a number, see `_slot`.
+_MOST_HELD = 61
+
 
 class Tables(NamedTuple):
     """Tables of S sets of held contacts for each of I lengths of intervals.
@@ -147,8 +150,8 @@ def make_tables(problem, still, watched, terms, lengths):
 
 @kernel
 def has_tables(problem):
-    """Whether tables hold: constant normal loads, no friction over speed."""
-    possible = not has_law(problem)
+    """Whether tables hold: constant normal loads, no friction over speed; sets are numbers."""
+    possible = not has_law(problem) and problem.spring.size <= _MOST_HELD
     for j in range(problem.spring.size):
         possible = possible and not varies(problem, j)
     return possible

@@ -20,7 +20,13 @@ def has_constraint(problem, j):
 @inner_kernel
 def is_constrained(problem, motion, j):
     """Whether a constraint holds a contact now."""
-    return motion.sense[j] == 0 and has_constraint(problem, j)
+    return motion.sense[j] == 0 and has_constraint(problem, j) and not motion.idle[j]
+
+
+@inner_kernel
+def is_spare(problem, motion, j):
+    """Whether other contacts of a loop keep a rigid one at rest: its force is constant, see `loops`."""
+    return motion.idle[j] and has_constraint(problem, j)
 
 
 @inner_kernel

@@ -69,6 +69,12 @@ def rate_under(problem, i, friction):
 
 
 @inner_kernel
+def key_bits(problem):
+    """Bits of a contact in a pattern: whether it is held; with segments of friction, which one it is in."""
+    return 16 if has_law(problem) else 1
+
+
+@inner_kernel
 def is_at_speed(side):
     """Whether an event is one at a break point."""
     return side == SLOWER or side == FASTER

@@ -1,0 +1,78 @@
+"""Nine to 64 contacts: against rows of two other programs, equivalent systems, and second starts."""
+
+import numpy as np
+import pytest
+from general_systems import frame
+
+import frictionmap as fm
+
+
+def ranges(system, r, beta, **further):
+    """Ranges of the contacts in one cell, which must be resolved."""
+    outputs = ("contact_peak_to_peak", "stops_per_cycle", "slips_per_cycle", "stuck_fraction")
+    ds = fm.sweep(system, [r], [beta], outputs=outputs, **further)
+    assert ds.status.item() == fm.regimes.RESOLVED
+    return ds
+
+
+def test_a_frame_of_20_storeys(reference_table):
+    """Rigid and elastic dampers: ranges and counts."""
+    for row in reference_table("continuous.json")["rows"]:
+        if row["kind"] != "frame-20":
+            continue
+        given, wanted = row["given"], row["expect"]
+        friction, kt = np.array(given["beta"]), given["kt_over_k"]
+        first = frame(20, stiffness=kt).modes.w[0]
+        # r and displacements are over the first natural frequency there
+        system = frame(20, friction=friction, stiffness=kt)
+        ds = ranges(system, given["r"] * first, 1.0)
+        found = ds.contact_peak_to_peak.values.ravel() * first**2
+        largest = max(wanted["contact_peak_to_peak"])
+        assert found == pytest.approx(wanted["contact_peak_to_peak"], abs=1e-10 * largest), row["id"]
+        counts = "slips_per_cycle" if kt else "stops_per_cycle"
+        assert ds[counts].values.ravel().tolist() == wanted[counts], row["id"]
+
+
+def test_equal_dampers_reach_their_limits_together():
+    """The loads of all of them are equal where they hold: the rates of the forces decide which let go."""
+    ds = fm.sweep(frame(8, friction=1.0), [1.3], 0.3 * np.linspace(1.0, 1.08, 9))
+    assert (ds.status == fm.regimes.RESOLVED).sum() >= 8
+
+
+def test_doubled_contacts():
+    """Two dampers with half the friction and half the stiffness each are one."""
+    one = frame(9, stiffness=2.0)
+    halves = [
+        fm.Contact(c.kind, c.masses, ratio=0.5 * c.ratio, stiffness=1.0)
+        for c in one.contacts
+        for _ in range(2)
+    ]
+    ones = [1.0] * 9
+    two = fm.System(
+        contacts=halves, mass_ratios=ones, stiffness_ratios=ones, damping_ratios=0.03, load_mass=9
+    )
+    found = ranges(two, 0.3, 0.2).contact_peak_to_peak.values.reshape(9, 2)
+    wanted = ranges(one, 0.3, 0.2).contact_peak_to_peak.values.ravel()
+    assert found == pytest.approx(np.stack((wanted, wanted), axis=1), abs=1e-11 * wanted.max())
+
+
+@pytest.mark.parametrize("n", [9, 16, 32, 64])
+def test_second_starts(n):
+    """A motion from rest and one from far away end alike: n contacts of random friction, rigid or elastic."""
+    rng = np.random.default_rng(n)
+    friction = rng.uniform(0.3, 1.0, n)
+    for stiffness in (None, 1.0):
+        system = frame(n, friction=friction, stiffness=stiffness, zeta=0.05)
+        r = 5.0 * system.modes.w[0]
+        beta = 0.3 * fm.boundaries(system, [r])["beta_noslip" if stiffness else "beta_stick"].item()
+        found = [
+            ranges(system, r, beta, start=start).contact_peak_to_peak.values.ravel()
+            for start in ("rest", "moving")
+        ]
+        assert found[0] == pytest.approx(found[1], abs=1e-12 * found[0].max())
+
+
+def test_at_most_64_contacts():
+    contacts = [fm.Contact("between-masses", (1, 2), stiffness=1.0)] * 65
+    with pytest.raises(fm.InputError, match="at most 64"):
+        fm.System(contacts=contacts, mass_ratios=[1, 1], stiffness_ratios=[1, 1])

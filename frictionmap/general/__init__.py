@@ -10,7 +10,7 @@ held             forces in contacts that do not slide, and the boundaries that f
 slopes           steady sliding under friction over speed: slopes of its fall, one-way sliding
 normal_force     normal forces that move with the structure: no slip, steady sliding, flutter
 normal_limits    boundaries of one contact with such a normal force
-loops            permanent sticking of contacts that close a loop
+loops            contacts that close a loop: permanent sticking, forces that are not determined
 closed_limits    friction without stops in closed form, where there is one
 no_stop          intervals of friction without stops
 boundaries       boundaries over r: permanent sticking, no stops, one-way sliding on belts

@@ -203,7 +203,7 @@ def test_reference_rings(reference_table):
             scale = ds.beta_stick.item() * given["beta"][0] / given["ratios"][0]
             assert scale == pytest.approx(given["beta_stick_scale"], rel=1e-10), row["id"]
         count += 1
-    assert count == 13
+    assert count == 14
 
 
 def test_a_ring_with_a_frictionless_contact_is_a_chain():

@@ -182,7 +182,7 @@ def _find_forces(problem, row, motion, box):
 
 
 @kernel
-def _let_go(problem, row, motion, box, zeros):
+def _release_accelerated(problem, row, motion, box, zeros):
     """Let the participants slide that accelerate, and give the others constraints or constant forces.
 
     zeros : leading terms of the velocities that are zero
@@ -200,7 +200,13 @@ def _let_go(problem, row, motion, box, zeros):
 
 @kernel
 def _settle_loops(problem, row, friction, tau, motion, box, forces, arrived):
-    """`settle` for contacts that may close loops; `forces` (N,): those before the event."""
+    """`settle` for contacts that may close loops.
+
+    Parameters
+    ----------
+    problem, row, friction, tau, motion, box, arrived : see `settle`
+    forces : (N,) those before the event
+    """
     contacts = motion.sense.size
     take_part(problem, row, friction, tau, motion, box)
     for j in range(contacts):
@@ -216,7 +222,7 @@ def _settle_loops(problem, row, friction, tau, motion, box, forces, arrived):
     if not factor_independent(problem, row, motion):
         return False
     stop_exactly(problem, row, motion)
-    if not _find_forces(problem, row, motion, box) or not _let_go(problem, row, motion, box, 1):
+    if not _find_forces(problem, row, motion, box) or not _release_accelerated(problem, row, motion, box, 1):
         return False
     for j in range(contacts):
         if box[PARTICIPATES, j] != 0.0:
@@ -226,9 +232,16 @@ def _settle_loops(problem, row, friction, tau, motion, box, forces, arrived):
 
 @kernel
 def settle_contacts(problem, row, friction, tau, motion, box, forces, arrived, released):
-    """Decide the pattern after an event at which forces jump; see `settle`.
+    """Decide the pattern after an event at which forces jump.
 
-    forces : (N,) forces before it
+    Parameters
+    ----------
+    problem, row, friction, tau, motion, box, arrived, released : see `settle`
+    forces : (N,) forces before the event
+
+    Returns
+    -------
+    bool : False if the contacts do not determine their forces, or these were not found
     """
     if problem.loops:
         return _settle_loops(problem, row, friction, tau, motion, box, forces, arrived)
@@ -272,7 +285,7 @@ def release_in_loops(problem, row, friction, motion, forces, x, box):
         if box[PARTICIPATES, j] != 0.0:
             limit = friction.kinetic[j]
             motion.state[F, j] = min(max(forces[j], -limit), limit)
-    return _let_go(problem, row, motion, box, 2)
+    return _release_accelerated(problem, row, motion, box, 2)
 
 
 @kernel

@@ -33,8 +33,8 @@ DRIFTS = 5
 _MOST_STEPS = 12
 _LESS = 0.5
 
-#: Steps in which Newton's method may lead away from the steady state, before the events have their order in
-#: it: one for so many contacts, none for less than twice as many.
+#: Contacts per step in which Newton's method may lead away from the steady state, before the events have
+#: their order in it; none of less than twice this number.
 _STRAYS = 5
 
 #: Largest step over the size of the motion, and largest motion over its size without friction: beyond, the

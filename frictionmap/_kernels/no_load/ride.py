@@ -16,7 +16,8 @@ from ..general.counts import COUNT_ROWS
 from ..general.crossings import value_at
 from ..general.follow import FOLLOWED, count_time, forget_tables, next_event, pass_event, prepare
 from ..general.laws.speed import set_segments
-from ..general.pattern import BOX_ROWS, begin, stop_exactly
+from ..general.loops import begin
+from ..general.pattern import BOX_ROWS, stop_exactly
 from ..general.problem import H, P, Q, padded, velocity_row
 from ..general.record import NOTHING, RANGES, clear_record, make_record, record_step
 from ..general.row import make_motion, make_row, set_channels, set_row

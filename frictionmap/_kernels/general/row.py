@@ -18,7 +18,7 @@ _KEPT_INTERVALS = 512
 #: Contacts all of whose patterns are kept; of more as many as the numbers of their tables allow, at least and
 #: at most so many.
 _KEPT_WHOLE = 6
-_KEPT_NUMBERS = 1 << 25
+_KEPT_NUMBERS = 1 << 27
 _LEAST_KEPT, _MOST_KEPT = 16, 256
 
 #: Patterns that are kept where friction depends on the speed.

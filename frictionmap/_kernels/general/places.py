@@ -348,7 +348,7 @@ def _note_creep(problem, friction, memory, places):
 
 
 @kernel
-def _is_settled(problem, friction, difference, safety, places):
+def _is_settled(problem, friction, memory, difference, safety, places):
     """Whether the places are known that the contacts at rest end at.
 
     Where one creeps, it causes the difference from the steady state: another that stays where it is, within
@@ -356,7 +356,7 @@ def _is_settled(problem, friction, difference, safety, places):
 
     Parameters
     ----------
-    problem, friction : Problem, Friction
+    problem, friction, memory : Problem, Friction; Return, with the motion at the section
     difference : size of the difference from the steady state, see `_difference`
     safety : see `_SAFETY`
     places : Places after `_note_creep`
@@ -368,8 +368,10 @@ def _is_settled(problem, friction, difference, safety, places):
         limit = friction.static[j]
         high, low = _sides(problem, friction, places, j)
         excess, reach = max(high, low), places.gains[j] * difference
-        # one that is overloaded by more slides on, by its inertia beyond the place where it no longer is
-        if excess + safety * reach <= _ROUNDING * limit or max(excess, reach) <= _PRECISE * limit:
+        # one that still slides, or is overloaded by more, goes on by its inertia to another place
+        held = memory.senses[j] == 0 or reach <= _PRECISE * limit
+        within = excess + safety * reach <= _ROUNDING * limit or max(excess, reach) <= _PRECISE * limit
+        if held and within:
             continue
         if excess > 0.0 and places.creep[_SLOWLY, j] != 0.0:
             creeping += 1
@@ -434,7 +436,7 @@ def follow_to_rest(problem, friction, halves, cycles, safety, workspace):
         difference = _compare(problem, row, motion, memory, places)
         if followed > 0.0:
             _note_creep(problem, friction, memory, places)
-        if _is_settled(problem, friction, difference, safety, places) or still >= _STILL:
+        if _is_settled(problem, friction, memory, difference, safety, places) or still >= _STILL:
             return True, followed
         if followed >= cycles:
             return False, followed

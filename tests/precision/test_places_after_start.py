@@ -65,7 +65,8 @@ def naive(zeta, r, beta, periods=20, steps=2**12):
 )
 def test_a_fast_mass_is_followed_until_its_load_no_longer_moves_it(zeta, r, beta, law):
     """It first comes to rest far from the middle, where its load exceeds the friction later: it slides back
-    beyond the place at which it no longer does.  Or it still slides where states are compared.  The twin's error is about half an angle of a step, 8e-4.
+    beyond the place at which it no longer does.  Or it still slides
+    where states are compared.  The twin's error is about half an angle of a step, 8e-4.
     """
     cell = moving(one_mass(zeta, law), r, beta)
     assert float(cell.stuck_fraction) == 1.0

@@ -11,7 +11,7 @@ from .._kernels.history.motion import CREEPING, Course, follow_record, make_memo
 from .bed import held
 from .channels import Drive
 from .starts import Start
-from .structure import Structure, problem_of, ties_of, watched_of
+from .structure import Structure, problem_of, ties_of, varying, watched_of
 
 #: Events and states that there is room for at first, and samples per event beyond these.
 _FIRST, _SAMPLES_PER_EVENT = 256, 4
@@ -60,7 +60,8 @@ class Motions:
     def __init__(self, structure: Structure, drive: Drive) -> None:
         self.structure, self.drive = structure, drive
         self.problem = problem_of(structure, drive)
-        self.ties = ties_of(structure) & drive.normal.any(axis=1)[:, np.newaxis]
+        self.ties = ties_of(structure)
+        self.ties[~varying(drive)] = False
         self.held = held(self.problem)
         self.watched = watched_of(structure, self.problem, drive)
 

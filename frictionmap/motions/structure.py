@@ -51,6 +51,11 @@ def _belts(general: ContactSystem) -> np.ndarray:
     return np.array([group.first.wall_velocity + group.first.wall_speed for group in general.groups])
 
 
+def varying(drive: Drive) -> np.ndarray:
+    """Whether the normal load of each contact varies, (N,) bool."""
+    return np.abs(drive.normal).max(axis=1, initial=0.0) > 0.0
+
+
 def ties_of(structure: Structure) -> np.ndarray:
     """The rigid contacts that keep both ends of springs at rest, see `general.problem.ties`."""
     general = structure.system.contact_system
@@ -65,7 +70,8 @@ def problem_of(structure: Structure, drive: Drive) -> Problem:
     largest = np.abs(drive.terms).sum(axis=2).max(axis=0)
     belt = _belts(general)
     # a slider under a varying normal load slips between ends at rest, too: it is watched there
-    tied = ties_of(structure) & ~drive.normal.any(axis=1)[:, np.newaxis]
+    tied = ties_of(structure)
+    tied[varying(drive)] = False
     size = float((np.abs(push) @ largest / (modal.squares + 1.0)).max())
     return Problem(
         modal.squares, modal.damping, bool((modal.damping != np.diag(np.diag(modal.damping))).any()),

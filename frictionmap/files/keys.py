@@ -241,7 +241,14 @@ _COORDINATE = either(number(least=0.0), with_unit("length"))
 _NAMED = {"type": "object", "minProperties": 1}
 _FLEXIBLE = {"modes": whole(least=1), "with_residual": {"type": "boolean"}}
 _BEAM = _structure(
-    "beam", {**_FLEXIBLE, "ends": _NAME, "points": {**_NAMED, "additionalProperties": _COORDINATE}}
+    "beam",
+    {
+        **_FLEXIBLE,
+        "ends": _NAME,
+        "points": {**_NAMED, "additionalProperties": _COORDINATE},
+        "end_springs": several(either(number(least=0.0), with_unit("stiffness")), 2, maxItems=2),
+        "end_masses": several(either(number(least=0.0), with_unit("mass")), 2, maxItems=2),
+    },
 )
 _PLATE = _structure(
     "plate",
@@ -284,7 +291,7 @@ STRUCTURE_KEYS = (
         example='{ ends = "clamped-free", length = "300 mm", bending_stiffness = "21 N m^2", '
         'mass_per_length = "0.78 kg/m", points = { tip = "300 mm" } }',
         words="{ ends, length, bending_stiffness or E, mass_per_length or density, width and height or "
-        "diameter, points = { name = x }, modes, with_residual }",
+        "diameter, points = { name = x }, modes, end_springs, end_masses, with_residual }",
     ),
     Key(
         "plate",

@@ -13,6 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..errors import InputError
+
 #: Orders of the derivatives that vanish at an end: displacement 0, slope 1, moment 2, shear force 3.
 ENDS = {"clamped": (0, 1), "pinned": (0, 2), "free": (2, 3), "guided": (1, 3)}
 
@@ -20,9 +22,28 @@ ENDS = {"clamped": (0, 1), "pinned": (0, 2), "free": (2, 3), "guided": (1, 3)}
 #: displacement is positive.
 _TURNED = {"clamped": (2, 1.0), "pinned": (1, -1.0), "free": (0, 1.0), "guided": (0, 1.0)}
 
+#: Least root of a beam with masses at its ends; 10^6 times its own mass at the end of a cantilever has 0.04.
+_LEAST_ROOT = 1e-2
+
 #: Steps of the iterations for b: each multiplies the error by 1/cosh b or less, 0.3 for the first mode of a
 #: cantilever, and by far less for all others.
 _MOST_STEPS = 60
+
+
+class Tips(NamedTuple):
+    """Springs to the ground, over EI/L^3, and masses, over rho A L, at the left and the right end."""
+
+    springs: tuple[float, float] = (0.0, 0.0)
+    masses: tuple[float, float] = (0.0, 0.0)
+
+    def shear(self, b: float) -> tuple[float, float]:
+        """Share of phi in the conditions on phi'''/b^3 at the left and the right end."""
+        left, right = (k / b**3 - m * b for k, m in zip(*self, strict=True))
+        return left, -right
+
+
+#: Ends without springs and masses.
+BARE = Tips()
 
 
 class Ends(NamedTuple):
@@ -48,6 +69,13 @@ def rigid_lines(ends: Ends) -> np.ndarray:
         return np.empty((0, 2))
     lines = np.array([[1.0, 0.0], [-math.sqrt(3.0), 2.0 * math.sqrt(3.0)]])
     return lines if ends.pair == {"free"} else lines[:1]
+
+
+def rigid_left(ends: Ends, tips: Tips) -> int:
+    """Number of rigid-body modes that springs at the ends leave."""
+    lines = rigid_lines(ends)
+    held = np.array([[1.0, float(end)] for end in (0, 1) if tips.springs[end]]).reshape(-1, 2)
+    return len(lines) - int(np.linalg.matrix_rank(held @ lines.T)) if lines.size and held.size else len(lines)
 
 
 def rigid_shapes(ends: Ends, x: np.ndarray) -> np.ndarray:
@@ -76,6 +104,71 @@ def roots(ends: Ends, count: int) -> np.ndarray:
     return (i if len(pair) == 1 else i - 0.5) * math.pi
 
 
+def _difference(b: float) -> float:
+    """sinh b - sin b, without cancellation."""
+    if b > 1.0:
+        return math.sinh(b) - math.sin(b)
+    return 2.0 * sum(b ** (4 * k + 3) / math.factorial(4 * k + 3) for k in range(5))
+
+
+def _dynamic_stiffness(b: float) -> np.ndarray:
+    """Forces and moments at the ends by displacements and slopes there, at w = b^2; (4, 4)."""
+    # over cosh b, which may exceed all doubles
+    over = 1.0 / math.cosh(b) if b < 700.0 else 0.0
+    s, c, t = math.sin(b), math.cos(b), math.tanh(b)
+    if b < 1.0:
+        h, sine, hyperbolic = 0.5 * b, math.sin(0.5 * b), math.sinh(0.5 * b)
+        root = over * (4.0 * (sine * hyperbolic) ** 2 - 2.0 * _difference(h) * (sine + hyperbolic))
+        apart, beyond = 2.0 * over * (sine**2 + hyperbolic**2), over * _difference(b)
+    else:
+        root, apart, beyond = over - c, 1.0 - c * over, t - s * over
+    place, slope = b**3 * (s + c * t), b * (s - c * t)
+    mixed, far = b**2 * s * t, -(b**3) * (s * over + t)
+    across, turned = b**2 * apart, b * beyond
+    return (
+        np.array(
+            [
+                [place, mixed, far, across],
+                [mixed, slope, -across, turned],
+                [far, -across, place, -mixed],
+                [across, turned, -mixed, slope],
+            ]
+        )
+        / root
+    )
+
+
+def roots_with_tips(ends: Ends, tips: Tips, count: int) -> np.ndarray:
+    """The first roots b of a beam with springs or masses at its ends, (count,).
+
+    The number of roots below a b is that of the beam with both ends clamped, plus the number of negative
+    eigenvalues of the dynamic stiffness (Wittrick and Williams): each root is found by bisection.
+    """
+    clamped = roots(Ends("clamped", "clamped"), count + 4)
+    free = [2 * end + k for end, kind in enumerate(ends) for k in (0, 1) if k not in ENDS[kind]]
+
+    def below(b: float) -> int:
+        stiffness = _dynamic_stiffness(b)
+        stiffness[0, 0] += tips.springs[0] - tips.masses[0] * b**4
+        stiffness[2, 2] += tips.springs[1] - tips.masses[1] * b**4
+        negative = np.linalg.eigvalsh(stiffness[np.ix_(free, free)]) < 0.0
+        return int((clamped < b).sum()) + int(negative.sum())
+
+    if below(_LEAST_ROOT):
+        raise InputError(
+            "end_masses",
+            f"must leave the first root b of the frequency w = b^2 above {_LEAST_ROOT:g}, in units of the "
+            f"beam; got {tips.masses[0]:g} and {tips.masses[1]:g} times its mass",
+        )
+    found = np.empty(count)
+    for i in range(count):
+        low, high = _LEAST_ROOT, float(clamped[i + 2])
+        while (middle := 0.5 * (low + high)) not in (low, high):
+            low, high = (low, middle) if below(middle) > i else (middle, high)
+        found[i] = high
+    return found
+
+
 def _settled(centre: np.ndarray, shift: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
     """Solve b = centre + shift(b)."""
     b = centre
@@ -97,48 +190,61 @@ def _terms(b: float, x: np.ndarray, order: int) -> np.ndarray:
     return found
 
 
-def _mode(ends: Ends, b: float) -> np.ndarray:
+def _mode(ends: Ends, b: float, tips: Tips) -> np.ndarray:
     """Amplitudes (4,) of the terms of the mode with this root, of unit modal mass."""
     zero, one = np.zeros(1), np.ones(1)
-    rows = [_terms(b, zero, order)[0] for order in ENDS[ends.left]]
-    rows += [_terms(b, one, order)[0] for order in ENDS[ends.right]]
+    rows = []
+    for end, kind, share in zip((zero, one), ends, tips.shear(b), strict=True):
+        for order in ENDS[kind]:
+            row = _terms(b, end, order)[0]
+            rows.append(row + share * _terms(b, end, 0)[0] if order == 3 and share else row)
     amplitudes = np.linalg.svd(np.array(rows))[2][-1]
     at_end = [float(_terms(b, one, order)[0] @ amplitudes) for order in range(4)]
-    # the integral of phi^2 by parts; the parts at the left end vanish, as does phi phi''' + phi' phi''
+    at_start = [float(_terms(b, zero, order)[0] @ amplitudes) for order in range(4)]
+    # the integral of phi^2 by parts; phi' phi'' vanishes at the ends, and phi phi''' where they are bare
     square = 0.25 * (at_end[0] ** 2 + at_end[2] ** 2 - 2.0 * at_end[1] * at_end[3])
+    if tips != BARE:
+        square += 0.75 * (at_end[0] * at_end[3] - at_start[0] * at_start[3]) / b
+        square += tips.masses[0] * at_start[0] ** 2 + tips.masses[1] * at_end[0] ** 2
     order, sign = _TURNED[ends.right]
     return amplitudes * math.copysign(1.0 / math.sqrt(square), sign * at_end[order])
 
 
-def shapes(ends: Ends, b: np.ndarray, x: np.ndarray) -> np.ndarray:
+def shapes(ends: Ends, b: np.ndarray, x: np.ndarray, tips: Tips = BARE) -> np.ndarray:
     """Modes with roots b (modes,) at places x (points,) in [0, 1], of unit modal mass; (points, modes)."""
     found = np.empty((x.size, b.size))
     for k, root in enumerate(b):
-        found[:, k] = _terms(float(root), x, 0) @ _mode(ends, float(root))
+        found[:, k] = _terms(float(root), x, 0) @ _mode(ends, float(root), tips)
     for end, kind in ((0.0, ends.left), (1.0, ends.right)):
         if 0 in ENDS[kind]:
             found[x == end] = 0.0
     return found
 
 
-def compliance(ends: Ends, x: np.ndarray) -> np.ndarray:
+def compliance(ends: Ends, x: np.ndarray, tips: Tips = BARE) -> np.ndarray:
     """Displacements at places x by unit forces at places x, (points, points).
 
     Of a beam with rigid-body modes it is what all other modes contribute: the force and the inertia that it
     causes are in balance, and the displacement has no part along rigid-body modes.
     """
-    return np.array([_deflection(ends, float(place), x) for place in x]).T
+    return np.array([_deflection(ends, float(place), x, tips) for place in x]).T
 
 
-def _deflection(ends: Ends, place: float, x: np.ndarray) -> np.ndarray:
+def _deflection(ends: Ends, place: float, x: np.ndarray, tips: Tips) -> np.ndarray:
     """Displacements at x by a unit force at a place: a ramp^3/6, minus the inertia, plus a cubic."""
-    lines = rigid_lines(ends)
+    lines = rigid_lines(ends) if tips == BARE else np.empty((0, 2))
     inertia = (lines[:, 0] + lines[:, 1] * place) @ lines  # a line: what rigid-body modes take of the force
     rows, right = [], []
-    for end, kind in ((0.0, ends.left), (1.0, ends.right)):
+    shares = (tips.springs[0], -tips.springs[1])
+    for end, kind, share in zip((0.0, 1.0), ends, shares, strict=True):
+        at = np.array([end])
         for order in ENDS[kind]:
-            rows.append(_power_slopes(end, order))
-            right.append(-float(_particular(np.array([end]), place, inertia, order)[0]))
+            row, own = _power_slopes(end, order), float(_particular(at, place, inertia, order)[0])
+            if order == 3 and share:
+                own += share * float(_particular(at, place, inertia, 0)[0])
+                row = [a + share * c for a, c in zip(row, _power_slopes(end, 0), strict=True)]
+            rows.append(row)
+            right.append(-own)
     for line in lines:
         rows.append([line[0] / (k + 1) + line[1] / (k + 2) for k in range(4)])
         right.append(-_moment(place, inertia, line))

@@ -59,7 +59,10 @@ class Beam:
     points : mapping
         Points with contacts, loads or outputs, by name: their distances from the left end.
     modes : int
-        Number of elastic modes, 1 to 200.
+        Number of elastic modes, 1 to 198.
+    end_springs, end_masses : sequence of float, optional
+        Stiffness of a spring to the ground, and mass of a body, at the left and at the right end, >= 0; at
+        ends that can move, and if no rigid-body mode is left.
     with_residual : bool, optional
         Whether the flexibility of all other modes is added, which needs a contact with a stiffness.  Default:
         where no contact is rigid.
@@ -89,6 +92,8 @@ class Beam:
     height: Any = None
     diameter: Any = None
     density: Any = None
+    end_springs: Any = None
+    end_masses: Any = None
     with_residual: bool | None = None
 
     def __post_init__(self) -> None:
@@ -105,10 +110,43 @@ class Beam:
         else:
             _alone(self, "mass_per_length", ("density",))
             self._put("mass_per_length", _positive(self.mass_per_length, "mass_per_length"))
+        for name in ("end_springs", "end_masses"):
+            self._put(name, self._end_values(name))
+        if self.tips != beam.BARE and beam.rigid_left(self.kinds, self.tips):
+            raise InputError(
+                "end_springs",
+                f"must leave no rigid-body mode of a {self.ends} beam with springs or masses at its ends; "
+                f"got {list(self.end_springs)}",
+            )
+        _ = self._roots  # refuses extreme masses
         self._put("points", self._places())
 
     def _put(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
+
+    def _end_values(self, name: str) -> tuple[float, float]:
+        """Springs or masses at both ends; 0 without."""
+        given = getattr(self, name)
+        if given is None:
+            return 0.0, 0.0
+        if not isinstance(given, Sequence | np.ndarray) or isinstance(given, str) or len(given) != 2:
+            raise InputError(name, f"must be two numbers, left and right; got {checks.one_line(given)}")
+        left, right = (checks.number(one, f"{name}[{k}]", least=0.0) for k, one in enumerate(given))
+        for k, (value, kind) in enumerate(zip((left, right), self.kinds, strict=True)):
+            if value and 0 in beam.ENDS[kind]:
+                raise InputError(
+                    f"{name}[{k}]", f"must be 0 at a {kind} end, which is at rest; got {value:g}"
+                )
+        return left, right
+
+    @cached_property
+    def tips(self) -> beam.Tips:
+        """Springs and masses at the ends, over EI/L^3 and over the mass of the beam."""
+        stiffness = self.bending_stiffness / self.length**3
+        springs, masses = self.end_springs, self.end_masses
+        return beam.Tips(
+            (springs[0] / stiffness, springs[1] / stiffness), (masses[0] / self.mass, masses[1] / self.mass)
+        )
 
     @cached_property
     def kinds(self) -> beam.Ends:
@@ -162,6 +200,8 @@ class Beam:
 
     @cached_property
     def _roots(self) -> np.ndarray:
+        if self.tips != beam.BARE:
+            return beam.roots_with_tips(self.kinds, self.tips, self.modes)
         return beam.roots(self.kinds, self.modes)
 
     @property
@@ -173,27 +213,31 @@ class Beam:
     @cached_property
     def shapes(self) -> np.ndarray:
         """Elastic modes at the points, of unit modal mass, (points, modes)."""
-        return beam.shapes(self.kinds, self._roots, self._x) / math.sqrt(self.mass)
+        return beam.shapes(self.kinds, self._roots, self._x, self.tips) / math.sqrt(self.mass)
 
     def shapes_at(self, x: np.ndarray) -> np.ndarray:
         """Elastic modes at distances x (k,) from the left end, of unit modal mass, (k, modes)."""
-        return beam.shapes(self.kinds, self._roots, np.asarray(x) / self.length) / math.sqrt(self.mass)
+        places = np.asarray(x) / self.length
+        return beam.shapes(self.kinds, self._roots, places, self.tips) / math.sqrt(self.mass)
 
     @property
     def rigid_shapes(self) -> np.ndarray:
         """Rigid-body modes at the points, of unit modal mass, (points, 0 to 2)."""
+        if self.tips != beam.BARE:  # there are none
+            return np.empty((len(self.points), 0))
         return beam.rigid_shapes(self.kinds, self._x) / math.sqrt(self.mass)
 
     @cached_property
     def residual(self) -> np.ndarray:
         """Flexibility of all other modes at the points, (points, points)."""
-        unit = beam.shapes(self.kinds, self._roots, self._x) / self._roots**2
-        rest = beam.compliance(self.kinds, self._x) - unit @ unit.T
+        unit = beam.shapes(self.kinds, self._roots, self._x, self.tips) / self._roots**2
+        rest = beam.compliance(self.kinds, self._x, self.tips) - unit @ unit.T
         return np.asarray(0.5 * (rest + rest.T) * (self.length**3 / self.bending_stiffness))
 
     def describe(self) -> str:
         """Describe the beam in a few words."""
-        return f"{self.ends} beam of length {self.length:g}"
+        more = "" if self.tips == beam.BARE else " with springs or masses at its ends"
+        return f"{self.ends} beam of length {self.length:g}{more}"
 
     def as_modes(self) -> Modes:
         """The beam as modes at its points."""

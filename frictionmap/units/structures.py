@@ -18,7 +18,8 @@ STRUCTURES: dict[str, tuple[type[Beam] | type[Plate], dict[str, str]]] = {
         {
             "length": "length", "bending_stiffness": "bending stiffness",
             "mass_per_length": "mass per length", "E": "modulus", "width": "length", "height": "length",
-            "diameter": "length", "density": "density", "points": "length",
+            "diameter": "length", "density": "density", "points": "length", "end_springs": "stiffness",
+            "end_masses": "mass",
         },
     ),
     "plate": (

@@ -418,8 +418,8 @@ def two_masses_and_nodes(tiny):
     {"contact": "between-masses", "contact_masses": [3, 4], "contact_stiffness": 1.2},
 ], ids=["belt", "normal load", "between"])  # fmt: skip
 def test_nodes_without_mass_are_light_nodes(keys):
-    # a contact and a load at nodes without mass, which only a residual flexibility describes, next to nodes of
-    # a mass of 1e-6; their vibrations are damped with ratios of 0.2 and change the motion by 2 0.2/1000
+    # a contact and a load at nodes without mass, which only a residual flexibility describes, beside nodes
+    # of a mass of 1e-6; their vibrations are damped with ratios of 0.2 and change the motion by 2 0.2/1000
     mass, stiffness = two_masses_and_nodes(0.0)
     node = stiffness[2:, 2:]
     follow = -np.linalg.solve(node, stiffness[2:, :2])

@@ -138,8 +138,9 @@ def _factors(sectors: Mapping[str, Any], count: int) -> np.ndarray:
         if given is None:
             continue
         if not isinstance(given, Sequence) or len(given) != count:
-            wanted = f"must have one number per sector ({count}); got {checks.one_line(given)}"
-            raise InputError(f"sectors.{name}", wanted)
+            raise InputError(
+                f"sectors.{name}", f"must have one number per sector ({count}); got {checks.one_line(given)}"
+            )
         row[:] = [checks.number(one, f"sectors.{name}[{k}]", above=0.0) for k, one in enumerate(given)]
     if "spread" in sectors:
         spread = _checked_table(sectors["spread"], "sectors.spread", SPREAD_KEYS)

@@ -183,10 +183,12 @@ def _creep_to_rest(problem, friction, tolerance, workspace):
     status, cycles = find_crept(problem, friction, tolerance, workspace)
     if status == REPEATS:
         contraction = largest_multiplier(problem, row, 2, STABLE_PRECISION, motion, memory)
-        find_rests(memory, places)
+        rests = find_rests(
+            memory, places
+        )  # without one, the motion would not be compared with the state found
         restore_friction(friction, ring.friction)
         fill_flexibility(problem, places)
-        if contraction <= STABLE and keep_orbit(problem, friction, 2, workspace):
+        if rests > 0 and contraction <= STABLE and keep_orbit(problem, friction, 2, workspace):
             go_back(memory, ring, 0)
             known, more = settle_places(problem, friction, 2, _CREEP_CYCLES, workspace)
             cycles += more

@@ -50,7 +50,7 @@ def _trace(ds: xr.Dataset, number: int, colour: str, label: str) -> Trace:
     """The only contact, or one that was chosen."""
     elastic = "y" in ds and bool(np.isfinite(ds["y"].values).any())
     stuck = ds["direction"].values == 0 if "direction" in ds else np.zeros(ds.sizes["tau"], dtype=bool)
-    opened = ds["open"].values == 1 if "open" in ds else np.zeros(ds.sizes["tau"], dtype=bool)
+    opened = ds["open"].values == 1 if "open" in ds else np.zeros_like(stuck)
     normal = ds["normal_force"].values if "normal_force" in ds else None
     if normal is not None and not np.isfinite(normal).any():
         normal = None

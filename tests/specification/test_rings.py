@@ -142,3 +142,17 @@ def test_keys_that_do_not_go_with_sectors_are_refused(keys, words):
     with pytest.raises(fm.InputError) as caught:
         fm.ring(**{"sectors": _SECTOR, "contacts": _DAMPERS, **keys})
     assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_all_sectors_of_a_ring_of_rigid_contacts_move_alike_in_every_cell_of_a_map(order):
+    """They close a loop; cells that began from their neighbours came out otherwise."""
+    rigid = [{"kind": "between-masses", "masses": [1, "next.1"]}]
+    found = fm.sweep(
+        _ring(rigid, engine_order=order), r=[1.2, 1.8], beta=[0.1, 0.2, 0.3], mu=[1.0],
+        outputs=["contact_peak_to_peak"],
+    )  # fmt: skip
+    ranges = found.contact_peak_to_peak.values
+    assert (found.status.values == 0).all()
+    assert (ranges.min(axis=-1) > 0.0).any()
+    assert np.ptp(ranges, axis=-1).max() < 1e-10 * ranges.max()

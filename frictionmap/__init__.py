@@ -22,8 +22,8 @@ features       high-frequency limits, peak thresholds, invariant points: feature
 theory         closed forms over frequency: beta_lim, beta_stick, continuous motion
 single         one rigid contact under one harmonic load: cells, maps, curves, motions
 general        several contacts, springs in contacts, belts, periodic loads: boundaries, maps, motions
-no_load        motions on belts without a load: steady sliding, its stability, and cycles
 phases         systems with linear phases: normal forces that move, separation, gaps, bilinear springs
+no_load        motions on belts without a load: steady sliding, its stability, and cycles
 solvers        the engines behind one interface, and which of them answers for a system
 steady         steady states: cells, maps, response curves, time histories; time and memory of a map
 stop_counts    borders between numbers of stops per cycle, as exact curves

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .. import regimes
-from .labels import BESIDE, COORDINATES, Label, in_si, si_units
+from .labels import BESIDE, COORDINATES, HISTORY_VARIABLES, Label, in_si, si_units
 from .motion_labels import SENSES
 
 CELL = ("mu", "wall_speed", "beta")
@@ -57,6 +57,8 @@ def _real(
     return Label(np.float64, meaning, dims, comment=comment, least=least, nan=True, inf=True, units=units)
 
 
+_NORMAL = "NaN for a contact whose normal force does not move"
+
 _RATIOS = {
     "mu": COORDINATES["mu"],
     "wall_speed": Label(np.float64, "speed of the belt, over omega_1 P/k1", ("wall_speed",), least=0.0),
@@ -86,6 +88,22 @@ _RATIOS = {
     "z_min": _real("least displacement in the contact, over P/k1"),
     "multiplier": _cycle_label("factor of a small deviation per cycle", least=0.0),
     "segment_crossings": _real("crossings of break points of the law per cycle", least=0.0),
+    "open_fraction": _real("part of the cycle in which the contact is open", _NORMAL, least=0.0),
+    "separations_per_cycle": _real("separations of the contact that begin per cycle", _NORMAL, least=0.0),
+    "normal_force_min": _real("least normal force in the contact, over P", _NORMAL, least=0.0),
+    "normal_force_max": _real("largest normal force in the contact, over P", _NORMAL, least=0.0),
+    "spring_crossings": _real(
+        "knots of a piecewise linear spring that its displacement passes, per cycle", "", (*CELL, "spring"),
+        0.0,
+    ),
+    "spring_force_max": _real(
+        "largest modulus of the force of a piecewise linear spring, over P", "", (*CELL, "spring"), 0.0
+    ),
+    "normal_force": _real("normal force in the contact, over P", _NORMAL, ("time",), 0.0),
+    "open": Label(np.int8, "whether the contact is open", ("time",), HISTORY_VARIABLES["open"].codes),
+    "spring_force": _real("force of a piecewise linear spring, over P", "", ("spring", "time")),
+    "spring": COORDINATES["spring"],
+    "spring_name": BESIDE["spring_name"],
     "unstable_maximum": _real(
         "largest displacement, in the direction of the belt, in the least unstable cycle, over P/k1",
         "NaN without one; a smaller vibration ends in steady sliding if that is stable",
@@ -122,7 +140,10 @@ MEASURES = {
     "length": ("x_max", "x_min", "unstable_maximum", "x", "z", "z_max", "z_min"),
     "time": ("cycle_period", "time"),
     "velocity": ("wall_speed", "v", "cycle_speed_lim", "sliding_speed_lim"),
-    "force": ("beta_sliding_lim", "friction"),
+    "force": (
+        "beta_sliding_lim", "friction", "normal_force_min", "normal_force_max", "spring_force_max",
+        "normal_force", "spring_force",
+    ),
     "frequency": ("growth_frequency",),
 }
 
@@ -138,11 +159,12 @@ BELTS = _RATIOS | {
 #: Variables that have one value per contact where there are several.
 OF_CONTACTS = (
     "stops_per_cycle", "turns_per_cycle", "stuck_fraction", "segment_crossings", "z", "friction", "direction",
-    "z_max", "z_min", "z_m", "z_max_m", "z_min_m", "friction_N",
+    "z_max", "z_min", "z_m", "z_max_m", "z_min_m", "friction_N", "open_fraction", "separations_per_cycle", "normal_force_min",
+    "normal_force_max", "normal_force", "open", "normal_force_min_N", "normal_force_max_N", "normal_force_N",
 )  # fmt: skip
 
 #: Coordinates; the others are variables.
 AXES = (
     *CELL, "dof", "time", "time_s", "contact", "contact_name", "wall_speed_m_s", "friction_force",
-    "friction_coefficient",
+    "friction_coefficient", "spring", "spring_name",
 )  # fmt: skip

@@ -120,7 +120,7 @@ def belt_table(ds: xr.Dataset) -> Any:
         if in_time and "time" not in one.dims:
             continue
         words = _decoded(one)
-        parts = [str(dim) for dim in one.dims if dim in ("dof", "contact")]
+        parts = [str(dim) for dim in one.dims if dim in ("dof", "contact", "spring")]
         if not parts:
             columns[str(name)] = words
             continue

@@ -20,6 +20,7 @@ from ..model.settings import BORDERS, CurveSettings, Solver, curve_settings
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
 from ..no_load.belts import belts_of
+from ..no_load.opening import given_of, is_phases
 from ..units.axes import KINDS, Ladder, grid_ratios, needs
 from ..units.dimensions import axes_in_ratios, chain_in_ratios, in_ratios, wanted_axes
 from ..units.scales import Scales, Units, Wanted, rounded, scales_of
@@ -466,7 +467,9 @@ def _belt(
     if axes[_SPEED][0] == 0.0:
         raise InputError("grid.wall_speed", "must be > 0 without a load: a belt at rest moves nothing; got 0")
     try:
-        belts_of(common.system)
+        belts = belts_of(common.system)
+        if is_phases(common.system):
+            given_of(common.system, belts)
     except InputError as error:
         raise within("system", error) from None
     return Config(

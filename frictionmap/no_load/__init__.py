@@ -11,6 +11,7 @@ dataset        motions as datasets: labels, units, provenance
 steady         steady sliding of a structure: its stability, and a proof that a motion ends there
 structure      cycles of structures: marched from a start, and closed by Newton's method
 structure_map  these motions over mu, belt speed and beta
+opening        motions of contacts that open, and beside piecewise linear springs
 response       one motion in time, over one cycle
 sweep          all motions over mu, belt speed and beta; their limits alone
 =============  ==================================================================================

@@ -12,11 +12,8 @@ from ..model.system import System
 #: Keys of loads, and of what acts on them alone.
 _LOADS = ("load_harmonics", "load_file", "waveform", "harmonics", "load", "load_offset")
 
-#: Keys of systems for which motions without a load are not offered.
-_OF_SYSTEMS = ("springs",)
-
 #: Keys of contacts for which motions without a load are not offered.
-_OF_CONTACTS = ("stiffness", "normal_load", "normal_record", "normal", "wall_velocity")
+_OF_CONTACTS = ("stiffness", "normal_load", "normal_record", "wall_velocity")
 
 _IN_SYSTEM = {"stiffness": "contact_stiffness"}
 
@@ -62,9 +59,6 @@ def _refuse_loads(system: System) -> None:
     for name in _LOADS:
         if getattr(system, name) is not None:
             raise InputError("cannot use", name, "without a load: belt speeds take its place; omit it")
-    for name in _OF_SYSTEMS:
-        if getattr(system, name) is not None:
-            raise InputError("cannot use", name, "without a load: this is not offered; omit it")
     if system.excitation == "base":
         raise InputError("cannot use", "excitation", "= 'base' without a load: the base is at rest; omit it")
     if system.load_mass != system.dofs.numbers[0]:

@@ -10,6 +10,7 @@ from ..datasets.labels import attributes, in_si
 from ..datasets.physical import COEFFICIENT, scale_attributes
 from ..datasets.variables import stamp
 from ..model.system import System
+from ..phases.dataset import spring_coordinates
 from ..units.axes import typed
 from ..units.scales import NO_SCALES, Scales, Units
 
@@ -35,6 +36,8 @@ def belt_dataset(
     own = dict(values)
     if "x_max" in values:
         own["dof"] = np.array(system.dofs.numbers)
+    if any(name.startswith("spring_") for name in values):
+        own |= {name: one.values for name, one in spring_coordinates(system).items()}
     groups = system.contact_system.groups
     if len(groups) > 1:
         own |= {"contact": np.arange(1, len(groups) + 1), "contact_name": np.array([g.name for g in groups])}

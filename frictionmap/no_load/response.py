@@ -15,6 +15,8 @@ from ..units.axes import ratios, require
 from ..units.scales import Units, scales_of
 from .belts import belts_of
 from .dataset import belt_dataset
+from .opening import STARTS as OPENING_STARTS
+from .opening import is_phases, opening_motion
 from .structure import Motion, Ride
 from .structure_map import OF_CELLS, OF_CONTACTS, OF_MASSES, sliding_of, starts
 
@@ -28,7 +30,7 @@ _SLIDING = 2.0 * np.pi
 
 def belt_response(
     system: System, wall_speed: SupportsFloat | str, beta: SupportsFloat | str, mu: SupportsFloat,
-    points: int, units: Units | None, start: str = "release",
+    points: int, units: Units | None, start: str | None = None,
 ) -> xr.Dataset:  # fmt: skip
     """Compute one motion on a belt in time.
 
@@ -38,7 +40,8 @@ def belt_response(
     wall_speed, beta, mu : belt speed > 0, friction ratio >= 0, ratio of static to kinetic friction >= 1
     points : samples per cycle
     units : Units, optional
-    start : "release", where the belt releases the mass, or "moving", a large vibration
+    start : "release", where the belt releases the mass (default), or "moving", a large vibration; with
+        contacts that open or piecewise linear springs "rest" (default) or "moving"
 
     Raises
     ------
@@ -48,13 +51,19 @@ def belt_response(
         None was found.
     """
     belts = belts_of(system)
-    checks.choice(start, "start", tuple(STARTS))
+    valid = OPENING_STARTS if is_phases(system) else STARTS
+    start = checks.choice(next(iter(valid)) if start is None else start, "start", tuple(valid))
     scales = scales_of(units, system)
     require(scales, wall_speed=("velocity", wall_speed), beta=("force", beta))
     given = _single(ratios(wall_speed, "wall_speed", "velocity", scales))
     speed = checks.number(given, "wall_speed", above=0.0)
     friction = checks.number(_single(ratios(beta, "beta", "force", scales)), "beta", least=0.0)
     mu = checks.number(mu, "mu", least=1.0)
+    axes = {name: np.array(one) for name, one in (("mu", mu), ("wall_speed", speed), ("beta", friction))}
+    title = "Motion on a belt without a load"
+    if is_phases(system):
+        values = opening_motion(system, belts, (speed, friction, mu), points, start)
+        return belt_dataset("response", title, system, axes, values, units, scales)
     sliding = sliding_of(system, belts, speed, friction, mu)
     ride = Ride(system, belts, speed, friction)
     found = Friction(sliding.kinetic, sliding.static)
@@ -66,8 +75,7 @@ def belt_response(
         )
     values = _cell_values(motion) | _samples(ride, found, motion, points)
     values |= {"growth": np.array(sliding.growth), "growth_frequency": np.array(sliding.frequency)}
-    axes = {name: np.array(one) for name, one in (("mu", mu), ("wall_speed", speed), ("beta", friction))}
-    return belt_dataset("response", "Motion on a belt without a load", system, axes, values, units, scales)
+    return belt_dataset("response", title, system, axes, values, units, scales)
 
 
 def _single(given: object) -> object:

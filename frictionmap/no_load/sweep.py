@@ -16,6 +16,7 @@ from ..units.scales import Scales, Units, scales_of
 from .belts import Belts, belts_of
 from .dataset import belt_dataset
 from .limits import sliding_limits, slope_limits_of, speed_limits
+from .opening import described, given_of, is_phases, opening_values
 from .one_mass import Law, cycle_speed_limits, empty_portraits, portrait_jobs, run, with_formula
 from .structure_map import structure_values
 
@@ -50,6 +51,8 @@ def checked(
     """
     refuse_modes(system, "compute motions without a load")
     belts = belts_of(system)
+    if is_phases(system):
+        given_of(system, belts)
     scales = scales_of(units, system)
     require(scales, wall_speed=("velocity", wall_speed), beta=("force", beta))
     speed = checks.axis(ratios(wall_speed, "wall_speed", "velocity", scales), "wall_speed", least=0.0)
@@ -89,14 +92,17 @@ def belt_map(
     given = checked(system, wall_speed, beta, mu, units)
     if progress is not None and not callable(progress):
         raise InputError("progress", f"must be a function of two numbers; got {checks.one_line(progress)}")
-    if system.n > 1:
+    if is_phases(system):
+        values = opening_values(system, given.belts, given.axes, threads, progress)
+    elif system.n > 1:
         values = structure_values(system, given.belts, given.axes, threads, progress)
     else:
         values = _one_mass_values(given, threads, progress)
-    if len(given.belts.groups) == 1:
+    if len(given.belts.groups) == 1 and not is_phases(system):
         values |= limits_of_motions(given)
     title = "Motions on a belt without a load"
-    return belt_dataset("sweep", title, system, given.axes, values, units, given.scales)
+    ds = belt_dataset("sweep", title, system, given.axes, values, units, given.scales)
+    return described(ds, system) if is_phases(system) else ds
 
 
 def belt_boundaries(
@@ -112,6 +118,11 @@ def belt_boundaries(
 def limits_of_motions(given: Given) -> dict[str, np.ndarray]:
     """Limits over mu, belt speed and beta; those of one contact or one mass only where there is one."""
     belts, axes = given.belts, given.axes
+    if is_phases(given.system):
+        raise InputError(
+            "cannot compute limits of motions without a load with contacts that open or piecewise linear "
+            "springs: they are those of constant normal forces; compute the map"
+        )
     if len(belts.groups) > 1:
         raise InputError(
             "cannot compute limits of motions without a load of several contacts: they are those of one; "

@@ -14,6 +14,7 @@ cycle       harmonics, works and phases of a steady motion
 response    one steady motion in time, as labelled variables
 curves      response curves
 sliding     steady sliding on belts: its place, and the growth of small vibrations
+attraction  a proof that a motion without a load ends in steady sliding
 free        steady motions without a load over mu, belt speed and beta
 ==========  ==================================================================================
 """

@@ -8,10 +8,11 @@ import numpy as np
 
 from .. import checks, regimes
 from .._kernels.general.problem import TURN
-from .._kernels.phases.fill import AVERAGED, CYCLES, PERIOD, Cells, Free, fill_cycles
-from .._kernels.phases.problem import Problem, Row, make_row
+from .._kernels.phases.fill import AVERAGED, CYCLES, PERIOD, STATUS, Cells, Free, Grid, fill_cycles
+from .._kernels.phases.problem import ELASTIC, LIFTOFFS, STOPS, TURNS, Problem, Row, make_row
 from ..errors import InputError
 from ..jobs import Job, Progress, Watch, run_counted
+from .attraction import attracts
 from .arrays import Modal, allocate, fastest, grid_of, modal, problem_of
 from .motion import events, in_time, steps_of, works
 from .quantities import FREE_TABLE, solved_of
@@ -31,10 +32,13 @@ STARTS = ("rest", "sliding", "far")
 #: Distance of the start next to steady sliding, and of that far from it, over the displacement there.
 _NEXT, _FAR = 1e-3, 10.0
 
+#: Times that a motion is followed on from where it seems to settle.
+_MOST_QUIET = 200
+
 
 def free_row(system: PhaseSystem, problem: Problem, size: float) -> Row:
     """The constants without a load; `size` is a displacement that friction causes."""
-    belt = np.array([one.wall_speed + one.wall_velocity for one in system.contacts], dtype=float)
+    belt = np.array([one.belt for one in system.contacts], dtype=float)
     none = np.zeros((2, 0, system.n + 1))
     row = make_row(problem, 1.0, TURN / fastest(problem), 0, belt, np.zeros(0), none)
     return row._replace(size=size)
@@ -53,16 +57,16 @@ def _state(system: PhaseSystem, modes: Modal, sliding: Sliding, start: Any) -> n
 
 
 def at_speed(system: PhaseSystem, speed: float) -> PhaseSystem:
-    """The system with this speed of its belts, those that move."""
+    """The system with this speed of its first belt that moves; others keep the quotient of their speeds."""
+    first = next(one.belt for one in system.contacts if one.belt)
     contacts = [
-        replace(one, wall_speed=speed, wall_velocity=0.0) if one.wall_speed or one.wall_velocity else one
-        for one in system.contacts
+        replace(one, wall_speed=one.belt / first * speed, wall_velocity=0.0) for one in system.contacts
     ]
     return replace(system, contacts=contacts)
 
 
 def _check(system: PhaseSystem) -> None:
-    if not any(one.wall_speed or one.wall_velocity for one in system.contacts):
+    if not any(one.belt for one in system.contacts):
         raise InputError("wall_speed", "must not be 0 in every contact without a load; got 0")
     if system.loads or system.base:
         raise InputError("cannot use", "load", "without r: a load gives the period; omit one")
@@ -75,7 +79,7 @@ class _Line:
         self, system: PhaseSystem, problem: Problem, modes: Modal, beta: np.ndarray, mu: float,
         starts: Sequence[Any], cycles: int,
     ) -> None:  # fmt: skip
-        self.problem = problem
+        self.system, self.problem, self.modes = system, problem, modes
         grid = grid_of(system, modes, beta, mu, cycles)
         self.sliding = [steady_sliding(system, *one) for one in zip(grid.limit, grid.preload, strict=True)]
         size = max((float(np.abs(one.place).max()) for one in self.sliding), default=1.0)
@@ -90,8 +94,41 @@ class _Line:
 
     def jobs(self, cancel: np.ndarray) -> list[Job]:
         """The jobs that fill the cells."""
-        pairs = zip(self.inputs, self.cells, strict=True)
-        return [(fill_cycles, (*given, 0, cells, cancel)) for given, cells in pairs]
+        return [(self.fill, (k, cancel)) for k in range(len(self.cells))]
+
+    def fill(self, k: int, cancel: np.ndarray) -> None:
+        """Fill the cells of one start."""
+        cells = self.cells[k]
+        fill_cycles(*self.inputs[k], 0, cells, cancel)
+        for at in np.flatnonzero(cells.numbers[:, CYCLES] == 1.0).tolist():
+            self.follow_on(k, at, cancel)
+        put_silent(cells, self.sliding)
+
+    def follow_on(self, k: int, at: int, cancel: np.ndarray) -> None:
+        """Follow a motion that seems to settle until it certainly does, or does something else.
+
+        The cell gets what the motion does then, and its start in `inputs` the state that it was followed from.
+        """
+        problem, row, grid, free = self.inputs[k]
+        one, sliding = allocate(problem, 1), self.sliding[at]
+        own = Grid(*(part[at : at + 1] for part in grid[:4]), grid.start, grid.cycles)
+        alone = Free(free.starts[at : at + 1].copy(), free.settles[at : at + 1], free.slowest, free.longest)
+        most = 1 if (problem.law == ELASTIC).any() else _MOST_QUIET  # their forces are lost in a new start
+        for _ in range(most):
+            motion = fill_cycles(problem, row, own, alone, 0, one, cancel)
+            if cancel[0] != 0:
+                return
+            if one.numbers[0, CYCLES] != 1.0:
+                for part, whole in zip(one, self.cells[k], strict=True):
+                    whole[at] = part[0]
+                free.starts[at] = alone.starts[0]
+                return
+            state = np.stack((motion.q[: self.system.n], motion.p[: self.system.n] / row.h))
+            x, v = state @ self.modes.phi.T
+            if attracts(self.system, sliding, own.preload[0], x, v, motion.sense):
+                return
+            alone = alone._replace(starts=state[np.newaxis].copy())
+        put_lost(self.cells[k], at)
 
     def outputs(self, names: Sequence[str]) -> dict[str, np.ndarray]:
         """Outputs of the motions that the first start leads to."""
@@ -112,6 +149,22 @@ def reachable(found: Sequence[np.ndarray], sliding: Sequence[Sliding]) -> np.nda
     for each in found:
         bits |= np.where(each >= 0, 1 << np.maximum(each, 0).astype(np.int64), 0).astype(np.uint8)
     return bits
+
+
+def put_lost(cells: Cells, at: int) -> None:
+    """Say that no motion was reached in a cell."""
+    cells.numbers[at, STATUS], cells.numbers[at, PERIOD] = regimes.NOT_REACHED, np.nan
+    cells.numbers[at, CYCLES] = cells.numbers[at, AVERAGED] = 0.0
+
+
+def put_silent(cells: Cells, sliding: Sequence[Sliding]) -> None:
+    """Tell motions that nothing drives or damps, and those near another equilibrium, from irregular ones."""
+    for at in np.flatnonzero(cells.numbers[:, STATUS] == regimes.IRREGULAR).tolist():
+        counts = cells.counts[at, [STOPS, TURNS, LIFTOFFS]]
+        if sliding[at].growth == 0.0:
+            cells.numbers[at, STATUS] = regimes.MARGINAL
+        elif not counts.any() and not cells.crossings[at].any():
+            put_lost(cells, at)
 
 
 def put_sliding(problem: Problem, cells: Cells, sliding: Sequence[Sliding]) -> None:
@@ -184,11 +237,12 @@ def response_free(
     problem = problem_of(system, modes, observed_rows(system.n))
     line = _Line(system, problem, modes, np.array([beta]), mu, [start], cycles)
     given, cells = line.inputs[0], line.cells[0]
-    motion = fill_cycles(*given, 0, cells, np.zeros(1, np.uint8))
+    line.fill(0, np.zeros(1, np.uint8))
     numbers = {name: values[0] for name, values in line.outputs([*FREE_TABLE, *OTHERS]).items()}
     if not cells.numbers[0, AVERAGED] > 0.0:
         return numbers
-    motion = fill_cycles(*given, int(motion.record.count[0]), cells, np.zeros(1, np.uint8))
+    count = fill_cycles(*given, 0, cells, np.zeros(1, np.uint8)).record.count[0]
+    motion = fill_cycles(*given, int(count), cells, np.zeros(1, np.uint8))
     steps = steps_of(problem, given[1], motion)
     numbers |= works(system, modes, steps, 1.0, 1)
     period = float(cells.numbers[0, PERIOD])

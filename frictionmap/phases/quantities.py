@@ -176,7 +176,7 @@ def free_regime(solved: Solved) -> np.ndarray:
     stuck = (solved.cells.counts[:, STUCK] > 0.0).any(axis=1)
     found = np.where(stuck, regimes.STICK_SLIP_CYCLE, regimes.CYCLE_WITHOUT_STOPS)
     found[numbers[:, CYCLES] == 1.0] = regimes.STEADY_SLIDING
-    lost = (numbers[:, CYCLES] != 1.0) & ~(numbers[:, PERIOD] > 0.0)
+    lost = (numbers[:, CYCLES] != 1.0) & ~(numbers[:, AVERAGED] > 0.0)
     return np.where(lost, regimes.UNRESOLVED, found).astype(np.int8)
 
 

@@ -60,7 +60,7 @@ def _belts(cycle: Cycle) -> np.ndarray:
     return np.array([one.first.wall_velocity + one.first.wall_speed / cycle.r for one in groups])
 
 
-def _senses(direction: np.ndarray, opened: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+def senses_of(direction: np.ndarray, opened: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     """Directions of the motion in the contacts; where one is open, that of its velocity."""
     return np.where(opened == 1, np.where(velocity < 0.0, -1, 1), direction).astype(np.int8)
 
@@ -72,7 +72,7 @@ def _traces(cycle: Cycle, given: PhaseSystem, tau: np.ndarray, begin: float) -> 
     traces.pop("spring_displacement")
     belts = _belts(cycle)[:, np.newaxis]
     velocity = general.vectors @ traces["v"] - belts
-    traces["direction"] = _senses(traces["direction"], traces["open"], velocity)
+    traces["direction"] = senses_of(traces["direction"], traces["open"], velocity)
     moving = np.array([group.normal is not None for group in general.groups])
     traces["normal_force"] = np.where(moving[:, np.newaxis], traces["normal_force"], np.nan)
     if "y" in traces:
@@ -102,7 +102,7 @@ def _events(cycle: Cycle, shown: int, begin: float) -> dict[str, np.ndarray]:
     opened = found["event_open"][order]
     values: dict[str, np.ndarray] = {
         "event_tau": tau,
-        "event_direction": _senses(found["event_direction"][order], opened, velocity),
+        "event_direction": senses_of(found["event_direction"][order], opened, velocity),
         "event_z": (chi @ motion.q)[contact, own],
     }
     general = cycle.system.contact_system

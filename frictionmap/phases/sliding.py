@@ -24,6 +24,7 @@ class Sliding(NamedTuple):
     normal_force: np.ndarray  # (N,)
     growth: float  # largest real part of the roots, over omega_1; NaN without a place
     frequency: float  # its imaginary part
+    stiffness: np.ndarray  # (n, n) of its phase; NaN without a place
 
     @property
     def is_stable(self) -> bool:
@@ -48,8 +49,8 @@ def steady_sliding(system: PhaseSystem, limit: np.ndarray, preload: np.ndarray) 
     preload : (N,) N0
     """
     n, count = system.n, len(system.contacts)
-    none = Sliding(np.full(n, np.nan), np.full(count, np.nan), np.nan, np.nan)
-    belts = np.array([one.wall_speed + one.wall_velocity for one in system.contacts])
+    none = Sliding(np.full(n, np.nan), np.full(count, np.nan), np.nan, np.nan, np.full((n, n), np.nan))
+    belts = np.array([one.belt for one in system.contacts])
     if any(one.friction != 0.0 or one.normal is None for one in np.array(system.contacts)[belts == 0.0]):
         return none
     x = np.zeros(n)
@@ -60,18 +61,18 @@ def steady_sliding(system: PhaseSystem, limit: np.ndarray, preload: np.ndarray) 
             x = np.linalg.solve(stiffness, load)
         except np.linalg.LinAlgError:
             return none
-        force = _normal_forces(system, preload, x)
+        force = normal_forces(system, preload, x)
         found = (force < 0.0, _pieces(system, x))
         if (found[0] == phase[0]).all() and found[1] == phase[1]:
             roots = np.linalg.eigvals(first_order(system.mass, system.damping, stiffness))
             worst = roots[np.argmax(roots.real)]
             growth = float(worst.real) if abs(worst.real) > _ROUNDING * np.abs(roots).max() else 0.0
-            return Sliding(x, np.maximum(force, 0.0), growth, float(abs(worst.imag)))
+            return Sliding(x, np.maximum(force, 0.0), growth, float(abs(worst.imag)), stiffness)
         phase = found
     return none
 
 
-def _normal_forces(system: PhaseSystem, preload: np.ndarray, x: np.ndarray) -> np.ndarray:
+def normal_forces(system: PhaseSystem, preload: np.ndarray, x: np.ndarray) -> np.ndarray:
     """N of every contact, as if it were closed."""
     moved = [
         0.0 if one.normal is None else one.normal_stiffness * (one.normal @ x) for one in system.contacts

@@ -38,6 +38,11 @@ class PhaseContact:
     preload: float | None = None
 
     @property
+    def belt(self) -> float:
+        """Velocity of the wall at r = 1."""
+        return self.wall_speed + self.wall_velocity
+
+    @property
     def law(self) -> int:
         """Its law in the kernels."""
         if self.normal is not None and self.friction == 0.0:

@@ -56,7 +56,7 @@ def _belt_motion(
     """One motion without a load in time."""
     refuse_settings(settings)
     points = checks.whole(points, "points", least=2, most=_MOST_POINTS)
-    return belt_response(system, *cell, points, units, settings.get("start") or "release")
+    return belt_response(system, *cell, points, units, settings.get("start"))
 
 
 def response(
@@ -88,7 +88,8 @@ def response(
     wall_speed : float
         In the place of r, without a load: speed of the belt over omega_1 P/k1 [-], > 0.  Of the settings only
         `start` has a meaning: "release" (default) begins where the belt releases the mass, "moving" with a
-        large vibration.
+        large vibration.  With contacts that open or piecewise linear springs they are "rest" (default) and
+        "moving".
 
     Returns
     -------

@@ -83,7 +83,9 @@ def sweep(
         attribute `reduction` gives its errors, and `reduction_check` what all modes, or many more, change.
 
         With wall_speed on (mu, wall_speed, beta): `regime`, `also_reachable`, `growth`, `growth_frequency`,
-        `cycle_period`, `stops_per_cycle`, `stuck_fraction`, `x_max`, `x_min`; on (mu, beta)
+        `cycle_period`, `stops_per_cycle`, `stuck_fraction`, `x_max`, `x_min`; of contacts that open and
+        piecewise linear springs also `open_fraction`, `separations_per_cycle`, `normal_force_min`,
+        `normal_force_max`, `spring_crossings`, `spring_force_max`; otherwise on (mu, beta)
         `cycle_speed_lim`; `beta_slope_lim`, `beta_slope_certificate`.
 
     Raises

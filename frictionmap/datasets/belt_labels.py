@@ -141,8 +141,13 @@ MEASURES = {
     "time": ("cycle_period", "time"),
     "velocity": ("wall_speed", "v", "cycle_speed_lim", "sliding_speed_lim"),
     "force": (
-        "beta_sliding_lim", "friction", "normal_force_min", "normal_force_max", "spring_force_max",
-        "normal_force", "spring_force",
+        "beta_sliding_lim",
+        "friction",
+        "normal_force_min",
+        "normal_force_max",
+        "spring_force_max",
+        "normal_force",
+        "spring_force",
     ),
     "frequency": ("growth_frequency",),
 }
@@ -159,7 +164,8 @@ BELTS = _RATIOS | {
 #: Variables that have one value per contact where there are several.
 OF_CONTACTS = (
     "stops_per_cycle", "turns_per_cycle", "stuck_fraction", "segment_crossings", "z", "friction", "direction",
-    "z_max", "z_min", "z_m", "z_max_m", "z_min_m", "friction_N", "open_fraction", "separations_per_cycle", "normal_force_min",
+    "z_max", "z_min", "z_m", "z_max_m", "z_min_m", "friction_N", "open_fraction",
+    "separations_per_cycle", "normal_force_min",
     "normal_force_max", "normal_force", "open", "normal_force_min_N", "normal_force_max_N", "normal_force_N",
 )  # fmt: skip
 

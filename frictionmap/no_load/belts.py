@@ -30,6 +30,12 @@ class Belts(NamedTuple):
         return [group.first.law or FrictionLaw() for group in self.groups]
 
 
+def is_one_mass(system: System) -> bool:
+    """Whether a system is one mass with the mass and the stiffness 1, which is solved in closed form."""
+    modes = system.modes
+    return system.n == 1 and modes.mass[0, 0] == 1.0 and modes.stiffness[0, 0] == 1.0
+
+
 def belts_of(system: System) -> Belts:
     """The contacts of a system without a load.
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..general.slopes import SlopeLimits, limits_of
 from ..model.system import System
-from .belts import Belts
+from .belts import Belts, is_one_mass
 
 
 def slope_limits_of(system: System, belts: Belts) -> SlopeLimits:
@@ -12,7 +12,7 @@ def slope_limits_of(system: System, belts: Belts) -> SlopeLimits:
     if len(belts.groups) > 1:
         return SlopeLimits(np.nan, np.nan, np.nan)
     modes = system.modes
-    if system.n == 1:  # stable where 2 zeta + beta g' > 0, and then every motion ends there
+    if is_one_mass(system):  # stable where 2 zeta + beta g' > 0, and then every motion ends there
         limit = 2.0 * system.zeta
         return SlopeLimits(limit, limit, 1.0)
     return limits_of(modes.mass, modes.damping, modes.stiffness, belts.groups[0].vector)

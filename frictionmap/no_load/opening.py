@@ -154,7 +154,7 @@ def opening_motion(
 def described(ds: xr.Dataset, system: System) -> xr.Dataset:
     """Say where motions begin, and what impacts of a stiff contact that opens are worth."""
     ds["regime"].attrs["long_name"] = "motion that begins at rest"
-    opened = ds["open_fraction"] if "open_fraction" in ds else None
+    opened = ds.get("open_fraction")
     if opened is None:
         return ds
     shares = opened.values if "contact" in opened.dims else opened.values[..., np.newaxis]

@@ -13,11 +13,11 @@ from ..model.general import refuse_modes
 from ..model.system import System
 from ..units.axes import ratios, require
 from ..units.scales import Scales, Units, scales_of
-from .belts import Belts, belts_of
+from .belts import Belts, belts_of, is_one_mass
 from .dataset import belt_dataset
 from .limits import sliding_limits, slope_limits_of, speed_limits
-from .opening import described, given_of, is_phases, opening_values
 from .one_mass import Law, cycle_speed_limits, empty_portraits, portrait_jobs, run, with_formula
+from .opening import described, given_of, is_phases, opening_values
 from .structure_map import structure_values
 
 #: Variables of the dataset and the fields of `Portraits` that they show.
@@ -94,7 +94,7 @@ def belt_map(
         raise InputError("progress", f"must be a function of two numbers; got {checks.one_line(progress)}")
     if is_phases(system):
         values = opening_values(system, given.belts, given.axes, threads, progress)
-    elif system.n > 1:
+    elif not is_one_mass(system):
         values = structure_values(system, given.belts, given.axes, threads, progress)
     else:
         values = _one_mass_values(given, threads, progress)
@@ -133,10 +133,10 @@ def limits_of_motions(given: Given) -> dict[str, np.ndarray]:
     values = {
         "beta_slope_lim": np.array(slope.limit),
         "beta_slope_certificate": np.array(slope.certificate),
-        "beta_sliding_lim": sliding_limits(belts, slope.limit, axes["wall_speed"], given.system.n == 1),
+        "beta_sliding_lim": sliding_limits(belts, slope.limit, axes["wall_speed"], is_one_mass(given.system)),
         "sliding_speed_lim": speed_limits(belts, slope.limit, kinetic),
     }
-    if given.system.n == 1:
+    if is_one_mass(given.system):
         limits = cycle_speed_limits(law_of(belts), given.system.zeta, ratio, kinetic)
         values["cycle_speed_lim"] = limits
     return values

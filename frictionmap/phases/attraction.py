@@ -45,7 +45,7 @@ def attracts(
 
 
 def _limits(system: PhaseSystem, x: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What ends the phase of steady sliding: functions of the state, and how far they are from their limits."""
+    """What ends the phase of steady sliding: functions of the state, and their distances from limits."""
     still, rows, margins = np.zeros(system.n), [], []
     for one, own in zip(system.contacts, force, strict=True):
         if one.normal is not None:

@@ -8,12 +8,21 @@ import numpy as np
 
 from .. import checks, regimes
 from .._kernels.general.problem import TURN
-from .._kernels.phases.fill import AVERAGED, CYCLES, PERIOD, STATUS, Cells, Free, Grid, fill_cycles
+from .._kernels.phases.fill import (
+    AVERAGED,
+    CYCLES,
+    MULTIPLIER,
+    PERIOD,
+    STATUS,
+    Cells,
+    Free,
+    fill_cycles,
+)
 from .._kernels.phases.problem import ELASTIC, LIFTOFFS, STOPS, TURNS, Problem, Row, make_row
 from ..errors import InputError
 from ..jobs import Job, Progress, Watch, run_counted
-from .attraction import attracts
 from .arrays import Modal, allocate, fastest, grid_of, modal, problem_of
+from .attraction import attracts
 from .motion import events, in_time, steps_of, works
 from .quantities import FREE_TABLE, solved_of
 from .sliding import Sliding, steady_sliding
@@ -33,7 +42,13 @@ STARTS = ("rest", "sliding", "far")
 _NEXT, _FAR = 1e-3, 10.0
 
 #: Times that a motion is followed on from where it seems to settle.
-_MOST_QUIET = 200
+_MOST_QUIET = 2000
+
+#: Part of the slowest period over which it is followed where Newton's method finds steady sliding as a cycle.
+_SHORT = 0.5
+
+#: Range of a motion, over its displacement, below which it is a place with rounding errors.
+_STILL = 1e-9
 
 
 def free_row(system: PhaseSystem, problem: Problem, size: float) -> Row:
@@ -100,25 +115,35 @@ class _Line:
         """Fill the cells of one start."""
         cells = self.cells[k]
         fill_cycles(*self.inputs[k], 0, cells, cancel)
-        for at in np.flatnonzero(cells.numbers[:, CYCLES] == 1.0).tolist():
+        for at in np.flatnonzero((cells.numbers[:, CYCLES] == 1.0) | is_still(cells, self.system.n)).tolist():
             self.follow_on(k, at, cancel)
         put_silent(cells, self.sliding)
 
     def follow_on(self, k: int, at: int, cancel: np.ndarray) -> None:
         """Follow a motion that seems to settle until it certainly does, or does something else.
 
-        The cell gets what the motion does then, and its start in `inputs` the state that it was followed from.
+        The cell gets what the motion does then, and its start in `inputs` the last state followed from.
         """
         problem, row, grid, free = self.inputs[k]
         one, sliding = allocate(problem, 1), self.sliding[at]
-        own = Grid(*(part[at : at + 1] for part in grid[:4]), grid.start, grid.cycles)
+        own = grid._replace(
+            limit=grid.limit[at : at + 1], static=grid.static[at : at + 1],
+            preload=grid.preload[at : at + 1], constant=grid.constant[at : at + 1],
+        )  # fmt: skip
         alone = Free(free.starts[at : at + 1].copy(), free.settles[at : at + 1], free.slowest, free.longest)
         most = 1 if (problem.law == ELASTIC).any() else _MOST_QUIET  # their forces are lost in a new start
+        is_short = False
         for _ in range(most):
             motion = fill_cycles(problem, row, own, alone, 0, one, cancel)
             if cancel[0] != 0:
                 return
-            if one.numbers[0, CYCLES] != 1.0:
+            if is_still(one, self.system.n)[0]:
+                longest = 0.5 * alone.longest if is_short else _SHORT * free.slowest
+                alone, is_short = alone._replace(longest=longest, settles=np.zeros(1, np.int64)), True
+                continue
+            if one.numbers[0, CYCLES] != 1.0 and not (
+                is_short and one.numbers[0, STATUS] == regimes.IRREGULAR
+            ):
                 for part, whole in zip(one, self.cells[k], strict=True):
                     whole[at] = part[0]
                 free.starts[at] = alone.starts[0]
@@ -126,6 +151,7 @@ class _Line:
             state = np.stack((motion.q[: self.system.n], motion.p[: self.system.n] / row.h))
             x, v = state @ self.modes.phi.T
             if attracts(self.system, sliding, own.preload[0], x, v, motion.sense):
+                put_settled(self.cells[k], at)
                 return
             alone = alone._replace(starts=state[np.newaxis].copy())
         put_lost(self.cells[k], at)
@@ -155,6 +181,22 @@ def put_lost(cells: Cells, at: int) -> None:
     """Say that no motion was reached in a cell."""
     cells.numbers[at, STATUS], cells.numbers[at, PERIOD] = regimes.NOT_REACHED, np.nan
     cells.numbers[at, CYCLES] = cells.numbers[at, AVERAGED] = 0.0
+
+
+def put_settled(cells: Cells, at: int) -> None:
+    """Say that the motion of a cell ends in steady sliding."""
+    cells.numbers[at, STATUS], cells.numbers[at, CYCLES] = regimes.RESOLVED, 1.0
+    cells.numbers[at, [PERIOD, MULTIPLIER]], cells.numbers[at, AVERAGED] = np.nan, 0.0
+    for counts in (cells.counts, cells.low, cells.high, cells.work, cells.belt_work, cells.distance):
+        counts[at] = np.nan
+    cells.crossings[at] = cells.spring_force[at] = np.nan
+
+
+def is_still(cells: Cells, n: int) -> np.ndarray:
+    """Cycles that are a place: Newton's method finds steady sliding too, which closes over any time."""
+    low, high = cells.low[:, :n], cells.high[:, :n]
+    size = np.maximum(np.abs(low), np.abs(high)).max(axis=1)
+    return (cells.numbers[:, PERIOD] > 0.0) & ((high - low).max(axis=1) <= _STILL * size)
 
 
 def put_silent(cells: Cells, sliding: Sequence[Sliding]) -> None:

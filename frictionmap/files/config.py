@@ -19,8 +19,7 @@ from ..model.sectors import in_full
 from ..model.settings import BORDERS, CurveSettings, Solver, curve_settings
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
-from ..no_load.belts import belts_of
-from ..no_load.opening import given_of, is_phases
+from ..no_load.belts import belts_of, is_phases
 from ..units.axes import KINDS, Ladder, grid_ratios, needs
 from ..units.dimensions import axes_in_ratios, chain_in_ratios, in_ratios, wanted_axes
 from ..units.scales import Scales, Units, Wanted, rounded, scales_of
@@ -469,6 +468,8 @@ def _belt(
     try:
         belts = belts_of(common.system)
         if is_phases(common.system):
+            from ..no_load.opening import given_of
+
             given_of(common.system, belts)
     except InputError as error:
         raise within("system", error) from None

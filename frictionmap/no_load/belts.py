@@ -36,6 +36,12 @@ def is_one_mass(system: System) -> bool:
     return system.n == 1 and modes.mass[0, 0] == 1.0 and modes.stiffness[0, 0] == 1.0
 
 
+def is_phases(system: System) -> bool:
+    """Whether a system has contacts that open, or piecewise linear springs."""
+    general = system.contact_system
+    return bool(general.springs) or any(group.normal is not None for group in general.groups)
+
+
 def belts_of(system: System) -> Belts:
     """The contacts of a system without a load.
 

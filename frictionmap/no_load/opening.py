@@ -34,19 +34,13 @@ _RANGES = {"x": ("midpoint", "peak_to_peak"), "z": ("contact_midpoint", "contact
 _SLIDING = 2.0 * np.pi
 
 
-def is_phases(system: System) -> bool:
-    """Whether a system has contacts that open, or piecewise linear springs."""
-    general = system.contact_system
-    return bool(general.springs) or any(group.normal is not None for group in general.groups)
-
-
 def given_of(system: System, belts: Belts) -> tuple[PhaseSystem, float]:
     """The system without its load, the speeds of its walls over that of the first one, and the latter's sign.
 
     Raises
     ------
     InputError
-        A contact rests on no belt, or has what is not offered.
+        A contact rests on no belt, or has a key that is not offered.
     """
     whole = phase_system(system, 1.0)
     contacts = []

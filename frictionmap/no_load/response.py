@@ -13,10 +13,10 @@ from ..errors import InputError, NoSteadyState
 from ..model.system import System
 from ..units.axes import ratios, require
 from ..units.scales import Units, scales_of
-from .belts import belts_of
+from .belts import belts_of, is_phases
 from .dataset import belt_dataset
 from .opening import STARTS as OPENING_STARTS
-from .opening import is_phases, opening_motion
+from .opening import opening_motion
 from .structure import Motion, Ride
 from .structure_map import OF_CELLS, OF_CONTACTS, OF_MASSES, sliding_of, starts
 

@@ -13,11 +13,11 @@ from ..model.general import refuse_modes
 from ..model.system import System
 from ..units.axes import ratios, require
 from ..units.scales import Scales, Units, scales_of
-from .belts import Belts, belts_of, is_one_mass
+from .belts import Belts, belts_of, is_one_mass, is_phases
 from .dataset import belt_dataset
 from .limits import sliding_limits, slope_limits_of, speed_limits
 from .one_mass import Law, cycle_speed_limits, empty_portraits, portrait_jobs, run, with_formula
-from .opening import described, given_of, is_phases, opening_values
+from .opening import described, given_of, opening_values
 from .structure_map import structure_values
 
 #: Variables of the dataset and the fields of `Portraits` that they show.

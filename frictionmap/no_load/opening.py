@@ -86,10 +86,10 @@ def _values(system: System, given: PhaseSystem, found: Mapping[str, np.ndarray])
         force = np.stack([np.abs(one(x @ one.direction)) for one in given.springs], axis=-1)
         values["spring_force_max"] = np.where(still, force, values["spring_force_max"])
         values["spring_crossings"] = np.where(still, 0.0, values["spring_crossings"])
-    return {name: _of_contact(name, one, len(given.contacts)) for name, one in values.items()}
+    return {name: _contact_shaped(name, one, len(given.contacts)) for name, one in values.items()}
 
 
-def _of_contact(name: str, values: np.ndarray, count: int) -> np.ndarray:
+def _contact_shaped(name: str, values: np.ndarray, count: int) -> np.ndarray:
     """Values of contacts, of a single one without a dimension."""
     of_contacts = (*OF_NORMAL, "stops_per_cycle", "turns_per_cycle", "stuck_fraction", "z_max", "z_min")
     return values[..., 0] if count == 1 and name in of_contacts else values

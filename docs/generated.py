@@ -212,7 +212,8 @@ def _codes() -> Iterator[str]:
     yield f".. automodule:: {title}\n   :no-members:\n"
     for variable, table in (
         ("regime", regimes.BELT_REGIMES), ("origin", regimes.ORIGINS), ("status", regimes.STATUSES),
-        ("limit_kind", regimes.LIMIT_KINDS),
+        ("limit_kind", regimes.LIMIT_KINDS), ("regime", regimes.NO_LOAD_REGIMES),
+        ("status", regimes.BELT_STATUSES), ("friction_lim_kind", regimes.SLIDING_LIMIT_KINDS),
     ):  # fmt: skip
         yield f".. list-table:: Codes of ``{variable}``\n   :header-rows: 1\n"
         yield "   * - constant\n     - value\n     - meaning"

@@ -22,6 +22,7 @@ from .errors import InputError
 
 __all__ = [
     "BELT_REGIMES",
+    "BELT_STATUSES",
     "BREAK_POINTS",
     "CLOSED_FORM",
     "COINCIDENCE",
@@ -214,6 +215,39 @@ STATUSES = (
 )
 
 
+#: Statuses of belts without a load: how certain the motions of a cell are.
+BELT_STATUSES = (
+    Code(RESOLVED, "resolved", "all motions were found"),
+    Code(
+        NOT_REACHED, "not_reached",
+        "of one mass: it is not proved that there are no further cycles without stops; of a structure: no "
+        "motion was reached",
+        "further motions are possible",
+    ),
+    Code(
+        MARGINAL, "marginal", "nothing damps or drives small vibrations",
+        "undamped: every small vibration lasts; add some damping",
+    ),
+    Code(
+        TOO_MANY_EVENTS, "too_many_events",
+        "the motion chatters, or contacts do not determine their forces",
+        "the motion chatters; change the belt speed or beta slightly",
+    ),
+    Code(
+        IRREGULAR, "irregular",
+        "a motion that does not repeat within 4000 maxima: extremes and stuck_fraction are those of the last "
+        "ones",
+        "no period; extremes and stuck_fraction are those of the last cycles followed",
+    ),
+    Code(
+        BREAK_POINTS, "break_points",
+        "whether steady sliding is stable differs between the formula of the law, which `growth` is of, and "
+        "its break points, by which motions are followed: make law.error smaller",
+        "near the limit of stability the break points of the law decide; make law.error smaller",
+    ),
+)  # fmt: skip
+
+
 def _code(codes: tuple[Code, ...], value: int, what: str) -> Code:
     """The code with this value."""
     for code in codes:
@@ -228,5 +262,8 @@ def regime_name(regime: int) -> str:
 
 
 def status_meaning(status: int) -> str:
-    """Cause that a status code stands for, and what to do about it."""
-    return _code(STATUSES, status, "status").meaning
+    """Cause that a status code stands for, and what to do about it; of belts without a load, if only these
+    have it.
+    """
+    further = tuple(code for code in BELT_STATUSES if code.value not in {one.value for one in STATUSES})
+    return _code((*STATUSES, *further), status, "status").meaning

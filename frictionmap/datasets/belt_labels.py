@@ -8,37 +8,6 @@ from .motion_labels import SENSES
 
 CELL = ("mu", "wall_speed", "beta")
 
-#: How certain the motions of a cell are.
-STATUSES = (
-    regimes.Code(regimes.RESOLVED, "resolved", "all motions were found"),
-    regimes.Code(
-        regimes.NOT_REACHED, "not_reached",
-        "of one mass: it is not proved that there are no further cycles without stops; of a structure: no "
-        "motion was reached",
-        "further motions are possible",
-    ),
-    regimes.Code(
-        regimes.MARGINAL, "marginal", "nothing damps or drives small vibrations",
-        "undamped: every small vibration lasts; add some damping",
-    ),
-    regimes.Code(
-        regimes.TOO_MANY_EVENTS, "too_many_events",
-        "the motion chatters, or contacts do not determine their forces",
-        "the motion chatters; change the belt speed or beta slightly",
-    ),
-    regimes.Code(
-        regimes.IRREGULAR, "irregular",
-        "a motion that does not repeat within 4000 maxima: extremes and stuck_fraction are those of the last "
-        "ones",
-        "no period; extremes and stuck_fraction are those of the last cycles followed",
-    ),
-    regimes.Code(
-        regimes.BREAK_POINTS, "break_points",
-        "whether steady sliding is stable differs between the formula of the law, which `growth` is of, and "
-        "its break points, by which motions are followed: make law.error smaller",
-        "near the limit of stability the break points of the law decide; make law.error smaller",
-    ),
-)  # fmt: skip
 
 _REACHABLE = tuple(
     one._replace(value=1 << one.value) for one in regimes.NO_LOAD_REGIMES if one.value != regimes.UNRESOLVED
@@ -75,7 +44,7 @@ _RATIOS = {
     "also_reachable": Label(
         np.uint8, "every stable motion of the cell", CELL, _REACHABLE, flags="flag_masks"
     ),
-    "status": Label(np.int8, "how certain the motions are", CELL, STATUSES),
+    "status": Label(np.int8, "how certain the motions are", CELL, regimes.BELT_STATUSES),
     "growth": _real("growth rate of small vibrations about steady sliding, over omega_1", "< 0: stable"),
     "growth_frequency": _real("frequency of these vibrations, over omega_1", least=0.0),
     "cycle_period": _cycle_label("period of the cycle, over 1/omega_1", least=0.0),

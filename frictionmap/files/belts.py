@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
-from ..datasets.belt_labels import AXES, BELTS, CELL, MEASURES, STATUSES
+from ..datasets.belt_labels import AXES, BELTS, CELL, MEASURES
 from ..datasets.labels import attributes, in_si
 from ..datasets.schema import checked_values
 from ..errors import InputError
@@ -70,7 +70,7 @@ def _lines(ds: xr.Dataset) -> Iterator[str]:
         if several:
             yield f"{several:,} cells have several stable motions: the initial state decides"
     if "status" in ds:
-        for code in STATUSES[1:]:
+        for code in regimes.BELT_STATUSES[1:]:
             count = int((ds["status"] == code.value).sum())
             if count:
                 yield f"{count:,} cell{'s' * (count != 1)} {code.name}: {code.advice}"
@@ -96,7 +96,7 @@ def _describe_motion(ds: xr.Dataset) -> str:
     unit = " m" if "x_min_m" in ds else ""
     words += [f"x from {_each(lowest)}{unit} to {_each(highest)}{unit}"]
     words += [f"growth of small vibrations about steady sliding {float(ds['growth']):.4g}"]
-    status = next(one for one in STATUSES if one.value == int(ds["status"]))
+    status = next(one for one in regimes.BELT_STATUSES if one.value == int(ds["status"]))
     return ", ".join([*words, *([f"{status.name}: {status.advice}"] if status.value else [])])
 
 

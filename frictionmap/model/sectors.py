@@ -9,6 +9,7 @@ in all of them.
 import cmath
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -206,7 +207,8 @@ def _sector_load(keys: Mapping[str, Any], n: int) -> dict[int, np.ndarray]:
             raise InputError("load", f"must have one number per mass of a sector ({n}); got {vector.size}")
         return {1: vector}
     if given is None:
-        mass = checks.whole(keys.get("load_mass") or 1, "load_mass", least=1, most=n)
+        given_mass = keys.get("load_mass")
+        mass = checks.whole(1 if given_mass is None else given_mass, "load_mass", least=1, most=n)
         return {1: np.eye(n)[mass - 1]}
     if not isinstance(given, Sequence):
         raise InputError(
@@ -231,6 +233,12 @@ def _repeated(given: object, count: int, n: int) -> list[dict[str, Any]]:
     found = []
     for k, one in enumerate(given, 1):
         keys = _keys_of(one, k)
+        if keys.get("normal") is not None:
+            raise InputError(
+                "cannot use",
+                f"contacts[{k}].normal",
+                "with sectors: it is not repeated in them; omit it",
+            )
         masses = keys.get("masses", (1,))
         masses = [masses] if isinstance(masses, (int, str)) else list(masses)
         for j in range(count):
@@ -242,9 +250,7 @@ def _repeated(given: object, count: int, n: int) -> list[dict[str, Any]]:
 
 def _keys_of(one: object, k: int) -> dict[str, Any]:
     if isinstance(one, Contact):
-        names = ("kind", "masses", "ratio", "force", "mu", "name", "stiffness", "wall_velocity",
-                 "normal_load", "wall_speed", "normal_record", "law", "law_file")  # fmt: skip
-        return {name: getattr(one, name) for name in names}
+        one = {key.name: getattr(one, key.name) for key in fields(Contact) if key.init}
     if not isinstance(one, Mapping):
         raise InputError(f"contacts[{k}]", f"must be a Contact; got {checks.one_line(one)}")
     return dict(one)

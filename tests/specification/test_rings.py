@@ -135,6 +135,11 @@ def test_what_does_not_fit_is_refused_by_name(changed, words):
         ({"excitation": "base"}, "excitation must be force with sectors"),
         ({"contacts": None}, "contacts must list the contacts of a sector"),
         ({"contacts": [{"masses": ["next.3"], "kind": "fixed-wall"}]}, "contacts[1].masses must be <= 2"),
+        (
+            {"contacts": [fm.Contact(normal={"mass": 2, "stiffness": 1.0, "friction": 0.4})]},
+            "cannot use contacts[1].normal with sectors",
+        ),
+        ({"load_mass": 0}, "load_mass must be >= 1; got 0"),
         ({"load": [1.0]}, "load must have one number per mass of a sector (2); got 1"),
     ],
 )

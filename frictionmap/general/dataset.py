@@ -1,6 +1,6 @@
 """Maps and boundaries of general systems as labelled variables."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -20,8 +20,14 @@ from .outputs import COUNTERPARTS, TABLE, depends_on_places, is_of_masses, is_wa
 from .problem import general_of
 
 
-def outputs_of(general: ContactSystem, solver: Solver) -> tuple[str, ...]:
+def chosen_outputs(
+    general: ContactSystem, solver: Solver, table: Collection[str], is_wanted: Callable, what: str
+) -> tuple[str, ...]:
     """The outputs of a map: those asked for, with their counterparts for elastic contacts.
+
+    table : the outputs that are offered
+    is_wanted : whether an output says something about a system
+    what : the systems, for the message
 
     Raises
     ------
@@ -30,16 +36,19 @@ def outputs_of(general: ContactSystem, solver: Solver) -> tuple[str, ...]:
     """
     names: list[str] = []
     for name in solver.outputs:
-        if name not in TABLE:
-            raise InputError(
-                f"cannot compute {name} with several contacts, springs, belts or loads of several harmonics; "
-                f"valid outputs: {', '.join(TABLE)}"
-            )
+        if name not in table:
+            raise InputError(f"cannot compute {name} with {what}; valid outputs: {', '.join(table)}")
         counterpart = COUNTERPARTS.get(name, name)
         names += [one for one in (name, counterpart) if is_wanted(one, general) or counterpart == name]
     if general.count > 1:
         names.append("contact_regime")
     return tuple(dict.fromkeys((*names, "status")))
+
+
+def outputs_of(general: ContactSystem, solver: Solver) -> tuple[str, ...]:
+    """The outputs of a map, see `chosen_outputs`."""
+    what = "several contacts, springs, belts or loads of several harmonics"
+    return chosen_outputs(general, solver, TABLE, is_wanted, what)
 
 
 def contact_variable(name: str, values: np.ndarray, contacts: int) -> xr.Variable:

@@ -9,10 +9,9 @@ from .. import checks
 from .._kernels.phases.problem import ELASTIC, RIGID
 from ..datasets.labels import BESIDE, LABELS, PER_CONTACT, attributes
 from ..datasets.variables import coordinate, label_variable
-from ..errors import InputError
-from ..general.dataset import contact_coordinates, contact_variable, refuse_static
+from ..general.dataset import chosen_outputs, contact_coordinates, contact_variable, refuse_static
 from ..general.normal_limits import limit_variables
-from ..general.outputs import COUNTERPARTS, is_of_masses
+from ..general.outputs import is_of_masses
 from ..jobs import Progress, Watch
 from ..model.general import ContactSystem, MergedContact
 from ..model.settings import Solver
@@ -51,25 +50,9 @@ def has_output(name: str, general: ContactSystem) -> bool:
 
 
 def outputs_of(general: ContactSystem, solver: Solver) -> tuple[str, ...]:
-    """The outputs of a map: those asked for, with their counterparts for elastic contacts.
-
-    Raises
-    ------
-    InputError
-        An output is not offered for such systems.
-    """
-    names: list[str] = []
-    for name in solver.outputs:
-        if name not in TABLE:
-            raise InputError(
-                f"cannot compute {name} with contacts that open or piecewise linear springs; valid outputs: "
-                f"{', '.join(TABLE)}"
-            )
-        counterpart = COUNTERPARTS.get(name, name)
-        names += [one for one in (name, counterpart) if has_output(one, general) or counterpart == name]
-    if general.count > 1:
-        names.append("contact_regime")
-    return tuple(dict.fromkeys((*names, "status")))
+    """The outputs of a map, see `chosen_outputs`."""
+    what = "contacts that open or piecewise linear springs"
+    return chosen_outputs(general, solver, TABLE, has_output, what)
 
 
 def spring_coordinates(system: System) -> dict[str, xr.Variable]:

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from frictionmap.phases.system import PhaseContact, PhaseSpring, PhaseSystem
+from frictionmap.model.spring_element import SpringElement
+from frictionmap.phases.system import PhaseContact, PhaseSystem
 
 
 def contact_of(one):
@@ -22,7 +23,7 @@ def contact_of(one):
 
 def spring_of(one):
     u, force = np.array(one["knots"], float).T
-    return PhaseSpring(np.array(one["c"], float), u, force, one["slopes"][0], one["slopes"][-1])
+    return SpringElement(np.array(one["c"], float), u, force, one["slopes"][0], one["slopes"][-1])
 
 
 def system_of(row):

@@ -59,39 +59,11 @@ class PhaseContact:
 
 
 @dataclass(frozen=True)
-class PhaseSpring:
-    """A spring whose force is piecewise linear over c.x.
-
-    direction : (n,) c
-    displacement, force : knots, displacements ascending
-    stiffness_below, stiffness_above : slopes before the first knot and after the last one
-    """
-
-    direction: np.ndarray
-    displacement: Sequence[float]
-    force: Sequence[float]
-    stiffness_below: float
-    stiffness_above: float
-
-    @property
-    def slopes(self) -> np.ndarray:
-        """Slopes of the pieces."""
-        inside = np.diff(self.force) / np.diff(self.displacement)
-        return np.concatenate(([self.stiffness_below], inside, [self.stiffness_above]))
-
-    def __call__(self, displacement: np.ndarray) -> np.ndarray:
-        """Force at displacements."""
-        below = self.stiffness_below * np.minimum(displacement - self.displacement[0], 0.0)
-        above = self.stiffness_above * np.maximum(displacement - self.displacement[-1], 0.0)
-        return np.interp(displacement, self.displacement, self.force) + below + above
-
-
-@dataclass(frozen=True)
 class PhaseSystem:
     """A structure with contacts and springs.
 
     mass, damping, stiffness : (n, n)
-    contacts, springs : PhaseContact, PhaseSpring
+    contacts, springs : PhaseContact, SpringElement
     loads : phasors (n,) by order
     base : phasors of the base motion by order, for walls that move with it
     offset : (n,) constant load
@@ -101,7 +73,7 @@ class PhaseSystem:
     damping: np.ndarray
     stiffness: np.ndarray
     contacts: Sequence[PhaseContact] = ()
-    springs: Sequence[PhaseSpring | SpringElement] = ()
+    springs: Sequence[SpringElement] = ()
     loads: Mapping[int, np.ndarray] = field(default_factory=dict)
     base: Mapping[int, complex] = field(default_factory=dict)
     offset: np.ndarray | None = None

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import frictionmap as fm
+from frictionmap.model.spring_element import SpringElement
 from frictionmap.phases.quantities import TABLE
 from frictionmap.phases.solve import response_phases, sweep_phases
-from frictionmap.phases.system import PhaseContact, PhaseSpring, PhaseSystem
+from frictionmap.phases.system import PhaseContact, PhaseSystem
 
 MASS = np.diag([1.0, 1.4, 0.8])
 DAMPING = np.array([[0.12, -0.03, 0.0], [-0.03, 0.1, -0.02], [0.0, -0.02, 0.09]])
@@ -45,7 +46,7 @@ def test_without_friction_a_closed_contact_is_a_spring():
 
 def test_a_knot_without_a_bend_changes_nothing():
     r = 0.8
-    spring = PhaseSpring(C - D, [-0.2, 0.1], [-0.3, 0.15], 1.5, 1.5)
+    spring = SpringElement(C - D, [-0.2, 0.1], [-0.3, 0.15], 1.5, 1.5)
     found = cell(structure(springs=[spring]), r)
     wanted = amplitudes(STIFFNESS + 1.5 * np.outer(C - D, C - D), r)
     assert found["spring_crossings"] == 4
@@ -55,7 +56,7 @@ def test_a_knot_without_a_bend_changes_nothing():
 def test_a_contact_that_only_opens_is_a_gap():
     r = 1.1
     contact = cell(structure(contacts=[damper(friction=0.0, preload=-0.2)]), r)
-    spring = cell(structure(springs=[PhaseSpring(D, [0.2 / 1.3], [0.0], 0.0, 1.3)]), r)
+    spring = cell(structure(springs=[SpringElement(D, [0.2 / 1.3], [0.0], 0.0, 1.3)]), r)
     assert contact["separations_per_cycle"] == 1
     assert np.abs(contact["amplitude"] - spring["amplitude"]).max() < 1e-13
 
@@ -116,10 +117,10 @@ def test_contacts_that_stay_closed_are_ordinary_ones(stiffness):
 
 def test_signs_and_numbering():
     r = 1.15
-    spring = PhaseSpring(np.array([-1.0, 1.0, 0.0]), [-0.3, 0.2], [-0.1, 0.1], 1.0, 2.0)
+    spring = SpringElement(np.array([-1.0, 1.0, 0.0]), [-0.3, 0.2], [-0.1, 0.1], 1.0, 2.0)
     first = cell(structure(contacts=[damper()], springs=[spring]), r)
     assert first["separations_per_cycle"] > 0
-    turned = PhaseSpring(-spring.direction, [-0.2, 0.3], [-0.1, 0.1], 2.0, 1.0)
+    turned = SpringElement(-spring.direction, [-0.2, 0.3], [-0.1, 0.1], 2.0, 1.0)
     second = cell(structure(contacts=[damper(direction=-C)], springs=[turned]), r)
     order = [2, 0, 1]
 
@@ -129,7 +130,7 @@ def test_signs_and_numbering():
     swapped = PhaseSystem(
         MASS[np.ix_(order, order)], DAMPING[np.ix_(order, order)], STIFFNESS[np.ix_(order, order)],
         [damper(direction=moved(C), normal=moved(D))],
-        [PhaseSpring(moved(spring.direction), [-0.3, 0.2], [-0.1, 0.1], 1.0, 2.0)],
+        [SpringElement(moved(spring.direction), [-0.3, 0.2], [-0.1, 0.1], 1.0, 2.0)],
         {1: moved(LOAD)},
     )  # fmt: skip
     third = cell(swapped, r)

@@ -8,9 +8,10 @@ import pytest
 from phase_systems import split, system_of
 
 from frictionmap import regimes
+from frictionmap.model.spring_element import SpringElement
 from frictionmap.phases.quantities import TABLE
 from frictionmap.phases.solve import response_phases, sweep_phases
-from frictionmap.phases.system import PhaseContact, PhaseSpring, PhaseSystem
+from frictionmap.phases.system import PhaseContact, PhaseSystem
 
 TWO_MASSES = {
     "mass": np.eye(2), "damping": np.diag([0.04, 0.06]), "stiffness": np.array([[1.0, 0.2], [0.2, 1.2]]),
@@ -107,7 +108,7 @@ def test_a_rigid_contact_that_opens():
     ],
 )
 def test_gap_and_backlash(r, knots, below, highest, lowest, crossings):
-    spring = PhaseSpring(np.ones(1), knots, [0.0] * len(knots), below, 4.0)
+    spring = SpringElement(np.ones(1), knots, [0.0] * len(knots), below, 4.0)
     cell = one_cell(PhaseSystem(**ONE_MASS, springs=[spring]), r)
     check_extremes(cell, [highest], [lowest], 1e-13)
     assert cell["spring_crossings"] == crossings
@@ -132,7 +133,7 @@ SYSTEMS = {
         PhaseSystem(
             **TWO_MASSES,
             contacts=[PhaseContact(C, ratio=None, limit=0.3)],
-            springs=[PhaseSpring(D - C, [-0.4, 0.4], [0.0, 0.0], 2.0, 3.0)],
+            springs=[SpringElement(D - C, [-0.4, 0.4], [0.0, 0.0], 2.0, 3.0)],
         ),
         0.9,
     ),
@@ -208,7 +209,7 @@ def twin(system, r, state, periods, steps):
     ("system", "r"),
     [
         SYSTEMS["elastic"],
-        (PhaseSystem(**TWO_MASSES, springs=[PhaseSpring(D - C, [-0.4, 0.4], [0.0, 0.0], 2.0, 3.0)]), 0.9),
+        (PhaseSystem(**TWO_MASSES, springs=[SpringElement(D - C, [-0.4, 0.4], [0.0, 0.0], 2.0, 3.0)]), 0.9),
     ],
     ids=["elastic", "backlash"],
 )

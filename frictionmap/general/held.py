@@ -16,7 +16,7 @@ from ..errors import InputError
 from ..model.general import ContactSystem
 from ..model.system import System
 from .observed import observed_phasors
-from .problem import general_of, is_symmetric, refuse_loop, springs
+from .problem import general_of, is_symmetric, pull_of, refuse_loop, springs
 
 #: Samples per period of the highest harmonic where extremes are looked for, and steps that refine them.
 _SAMPLES = 16
@@ -95,9 +95,11 @@ def held_forces_of(
     elastic, vectors = general.elastic[which], general.vectors[which]
     n = vectors.shape[1]
     moved = np.array([float(general.groups[j].base) for j in which])
-    kt = springs(general)[which]
-    w = vectors[~elastic].T
-    stiffness = system.modes.stiffness + (vectors.T * kt) @ vectors
+    kt, flexibility = springs(general)[which], general.flexibility
+    if flexibility.size:
+        kt = np.linalg.inv(flexibility[np.ix_(which, which)])
+    w, pull = vectors[~elastic].T, pull_of(kt, vectors).T
+    stiffness = system.modes.stiffness + pull @ vectors
     forces, motions = {}, {}
     for order in orders_of(general):
         matrix = np.zeros((r.size, n + w.shape[1], n + w.shape[1]), dtype=complex)
@@ -105,16 +107,17 @@ def held_forces_of(
         matrix[:, :n, :n], right[:, :n] = linear_parts(system, stiffness, order, r)
         matrix[:, :n, n:], matrix[:, n:, :n] = w, w.T
         u = general.base.get(order, 0.0)
-        right[:, :n] += u * (vectors.T * kt) @ moved
+        right[:, :n] += u * pull @ moved
         right[:, n:] = u * moved[~elastic]
         direct = _direct(general, order)[which]
-        right[:, :n] -= (vectors.T * kt) @ direct
+        right[:, :n] -= pull @ direct
         found = solve_each(matrix, right)
         x = found[:, :n]
         force = np.empty((r.size, which.size), dtype=complex)
         force[:, ~elastic] = found[:, n:]
         with np.errstate(invalid="ignore"):  # an infinite x
-            force[:, elastic] = kt[elastic] * (x @ vectors[elastic].T - u * moved[elastic] + direct[elastic])
+            place = x @ vectors[elastic].T - u * moved[elastic] + direct[elastic]
+            force[:, elastic] = place @ kt if flexibility.size else kt[elastic] * place
         forces[order], motions[order] = force, x
     return forces, motions
 

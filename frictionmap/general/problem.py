@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._kernels.general.problem import FLAT, Law, Problem
+from .._kernels.general.problem import FLAT, UNCOUPLED, Coupling, Law, Problem
 from ..errors import InputError
 from ..model.friction_law import FrictionLaw
 from ..model.general import LOOP, ContactSystem, refuse_law
@@ -137,7 +137,7 @@ def _phasors(channels: list[Channel], orders: tuple[int, ...], r: np.ndarray) ->
 
 def _norms(modal: ModalSystem, spring: np.ndarray) -> tuple[float, float]:
     """Norms of the modal matrices, of damping and of stiffness with all springs."""
-    stiffness = np.diag(modal.squares) + modal.chi.T @ (spring[:, np.newaxis] * modal.chi)
+    stiffness = np.diag(modal.squares) + modal.chi.T @ pull_of(spring, modal.chi)
     return float(np.linalg.norm(modal.damping, 2)), float(np.linalg.eigvalsh(stiffness)[-1])
 
 
@@ -164,7 +164,7 @@ def _rates(
 
 def least_ratio(system: System) -> float:
     """Least r > 0 at which motions of a system are followed; see `_refuse_low`."""
-    return fastest(modal_system(system), springs(general_of(system))) / _HIGHEST_RATE
+    return fastest(modal_system(system), spring_matrix(general_of(system))) / _HIGHEST_RATE
 
 
 def is_symmetric(general: ContactSystem) -> bool:
@@ -191,6 +191,25 @@ def static_offset(system: System) -> tuple[np.ndarray, np.ndarray]:
 def springs(general: ContactSystem) -> np.ndarray:
     """Stiffness of every contact, 0 where it is rigid, (N,)."""
     return general.stiffnesses
+
+
+def spring_matrix(general: ContactSystem) -> np.ndarray:
+    """Stiffness of every contact, (N,); of coupled ones F^-1, (N, N)."""
+    flexibility = general.flexibility
+    return np.linalg.inv(flexibility) if flexibility.size else springs(general)
+
+
+def pull_of(spring: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Forces in contacts per coordinate, (N, n), of springs as of `spring_matrix` with vectors (N, n)."""
+    return np.asarray(spring @ vectors if spring.ndim == 2 else spring[:, np.newaxis] * vectors)
+
+
+def coupling_of(general: ContactSystem) -> Coupling:
+    """How forces in contacts displace others beside the modes."""
+    flexibility = general.flexibility
+    if not flexibility.size:
+        return UNCOUPLED
+    return Coupling(np.ascontiguousarray(flexibility), np.diag(np.linalg.inv(flexibility)).copy())
 
 
 def refuse_loop(general: ContactSystem) -> None:
@@ -280,7 +299,7 @@ def problem_of(
     spring = springs(general)
     if general.has_law and beta is None:
         refuse_law(system, "compute this")
-    rates = _rates(modal, spring, orders, r, law_damping(general, beta or 0.0))
+    rates = _rates(modal, spring_matrix(general), orders, r, law_damping(general, beta or 0.0))
     _refuse_low(rates, r)
     if general.free and (r == 0.0).any():
         raise InputError("r", "must be > 0 for a free structure, which no slow load leaves at a place; got 0")
@@ -299,6 +318,6 @@ def problem_of(
         np.ascontiguousarray(np.array([channel.normal for channel in channels]).T),
         spring, belt, tied, np.array(orders, dtype=float), r, phasors,
         rates, np.where(sizes > 0.0, sizes, 1.0), is_symmetric(general), law_of(system, modal),
-        bool(general.loop),
+        bool(general.loop), coupling_of(general),
     )  # fmt: skip
     return problem, modal

@@ -205,6 +205,14 @@ class ContactSystem:
         return np.asarray(1.0 / (1.0 / own + self.points.own))
 
     @property
+    def flexibility(self) -> np.ndarray:
+        """F = Kt^-1 + R_cc (N, N) of elastic contacts that it couples beside the modes; else (0, 0)."""
+        own = np.array([group.stiffness or 0.0 for group in self.groups])
+        if self.points is None or not self.points.couples(own):
+            return np.zeros((0, 0))
+        return self.points.flexibility(own)
+
+    @property
     def loads(self) -> Mapping[int, np.ndarray]:
         """Phasors of the loads on the masses, or points, by order."""
         return self.forces if self.points is None else self.points.loads

@@ -194,8 +194,8 @@ class System(Shown):
     modes : Modes, Beam, Plate or mapping, optional
         Instead of matrices: natural frequencies and shapes at named points, with contacts, loads and outputs
         at these.  contact_masses, load_mass and the masses of contacts are names of points.  A residual
-        flexibility is offered with one contact, which has a stiffness.  The attribute of this name is the
-        modal model of any system.
+        flexibility needs contacts that all have a stiffness.  The attribute of this name is the modal model
+        of any system.
     excitation : {"force", "base"}, optional
         "base": the structure stands on a base that moves by Y cos(tau), and P = stiffness_scale Y (k_1 Y for
         a chain); all degrees of freedom of given matrices are then displacements in the direction of the base

@@ -344,9 +344,6 @@ def test_a_beam_in_units(tmp_path):
     (lambda: fm.System(modes=fm.Modes([1.0], 0, [[1.0]], ["tip"]), excitation="base"),
      "excitation must be force for modes"),
     (lambda: fm.System(modes=fm.System().modes), "modes must be those of a structure"),
-    (lambda: fm.System(modes=fm.Beam(**UNIT, points={"tip": 1.0, "mid": 0.5}), load_mass="tip", contacts=[
-        fm.Contact(masses=["tip"], stiffness=1.0), fm.Contact(masses=["mid"], stiffness=1.0)]),
-     "cannot use residual with the contacts fixed-wall tip and fixed-wall mid, which it couples"),
     (lambda: fm.Modes([1.0], 0, [[1.0, 2.0]]), "shapes must be points x 1 modes; got 1 x 2"),
     (lambda: fm.Modes(np.arange(1.0, 202.0), 0, np.ones((1, 201))), "modes must be at most 200; got 201"),
     (lambda: fm.Modes([2.0, 1.0], 0, [[1.0, 2.0]]), "w must be >= 0 and increasing"),

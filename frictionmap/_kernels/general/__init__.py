@@ -10,6 +10,7 @@ module         what is in it
 keys           places of patterns in tables
 problem        a system over r, the constants of one r, the memory of a motion: arrays and their rows
 crossings      values of a series, and its first zero, with certainty
+cholesky       factors of small positive definite matrices
 counts         counters of a motion
 laws           contact laws: phases, watched quantities, what follows an event
 row            the constants of one r and the memory of a motion, allocated and filled; series of the load

@@ -40,7 +40,7 @@ from .counts import (
 from .laws.contact import regime_of
 from .laws.kinds import has_force
 from .laws.speed import has_law
-from .places import fill_needs, keep_held, place_after_start
+from .places import fill_needs, keep_held, place_after_start, place_at_start
 from .problem import padded, varies
 from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES
 from .return_map import copy_motion, copy_state, from_rest, steady_period
@@ -52,8 +52,8 @@ _ISOLATED = 1.0 - 1e-9
 
 
 #: Contacts of a row that stick permanently: not known yet, some slip after the start, none does
-#: in this cell and those after it.
-_UNKNOWN, _SOME_SLIP, _STAYS = 0, 1, 2
+#: in this cell and those after it, at the place 0 or where they begin.
+_UNKNOWN, _SOME_SLIP, _STAYS, _STAYS_AWAY = 0, 1, 2, 3
 
 
 #: Numbers of a contact that are stored, per period of the load: counted ones; standard errors of averages;
@@ -231,6 +231,25 @@ def _store_stuck(problem, out, m, i, b):
 
 
 @kernel
+def _stays(problem, grid, m, i, b, friction, workspace, place):
+    """Whether no contact slips from the start on, in a cell that sticks permanently; see `_place_stuck`."""
+    needs = workspace.needs
+    changes = fit_row(problem, i, friction, workspace)
+    # where a normal load varies, what is kept depends on the friction
+    for j in range(needs.size):
+        changes = changes or varies(problem, j)
+    if place == _UNKNOWN or changes:
+        if not keep_held(problem, friction, grid.tolerance, workspace):
+            return True
+        fill_needs(problem, friction, grid.starts[i], workspace)
+    _set_friction(grid, m, i, b, friction)
+    stays = True
+    for j in range(needs.size):
+        stays = stays and friction.static[j] >= needs[j]
+    return stays
+
+
+@kernel
 def _place_stuck(problem, grid, m, i, b, friction, workspace, place, out):
     """Store the displacements at the places to which the start leads in a cell that sticks permanently.
 
@@ -239,39 +258,30 @@ def _place_stuck(problem, grid, m, i, b, friction, workspace, place, out):
     problem, grid : Problem, Grid
     m, i, b : indices of mu, r and beta
     friction, workspace : Friction, replaced; Workspace
-    place : _UNKNOWN, _SOME_SLIP or _STAYS, of the cells of the row before this one
+    place : _UNKNOWN, _SOME_SLIP, _STAYS or _STAYS_AWAY, of the cells of the row before this one
     out : Cells
 
     Returns
     -------
-    int : _SOME_SLIP or _STAYS
+    int : _SOME_SLIP, _STAYS or _STAYS_AWAY
     """
     if place == _STAYS:
         return _STAYS
-    state, needs = grid.starts[i], workspace.needs
+    state, shift = grid.starts[i], out.lowest[m, i, b]
     _set_friction(grid, m, i, b, friction)
-    changes = fit_row(problem, i, friction, workspace)
-    # where a normal load varies, what is kept depends on the friction
-    for j in range(needs.size):
-        changes = changes or varies(problem, j)
-    if place == _UNKNOWN or changes:
-        if not keep_held(problem, friction, grid.tolerance, workspace):
+    if place == _STAYS_AWAY or _stays(problem, grid, m, i, b, friction, workspace, place):
+        if not place_at_start(problem, friction, state, workspace, shift):
             return _STAYS
-        fill_needs(problem, friction, state, workspace)
-    _set_friction(grid, m, i, b, friction)
-    stays = True
-    for j in range(needs.size):
-        stays = stays and friction.static[j] >= needs[j]
-    if stays:
-        return _STAYS
-    shift = out.lowest[m, i, b]
-    if not place_after_start(problem, friction, state, grid.cycles, workspace, shift):
-        out.status[m, i, b] = NOT_REACHED
-        for k in range(shift.size):
-            shift[k] = math.nan
+        place = _STAYS_AWAY
+    else:
+        if not place_after_start(problem, friction, state, grid.cycles, workspace, shift):
+            out.status[m, i, b] = NOT_REACHED
+            for k in range(shift.size):
+                shift[k] = math.nan
+        place = _SOME_SLIP
     for k in range(shift.size):
         out.highest[m, i, b, k] = shift[k]
-    return _SOME_SLIP
+    return place
 
 
 @kernel

@@ -8,6 +8,7 @@ from .crossings import NONE, value_at
 from .glide import can_glide, glide
 from .laws.contact import change_phase, count, jumps
 from .laws.coulomb import comes_to_rest, first_event, watched_slope
+from .laws.coupled import begin_slip, is_coupled
 from .laws.elastic import end_slips, rest_springs
 from .laws.kinds import has_constraint
 from .laws.speed import first_bound, has_law, is_at_speed, pass_break_point, set_segments
@@ -25,7 +26,7 @@ from .problem import SECTION, H, force_row, normal_row
 from .record import record_step
 from .row import set_channels
 from .series import advance, expand, factor_held
-from .tangent import advance_tangent, hold_tangent, through_event, watched_row
+from .tangent import advance_tangent, hold_tangent, through_event, through_slip, watched_row
 
 #: Phases of no length in a row after which the contacts chatter.
 _MOST_IMMEDIATE = 200
@@ -34,7 +35,7 @@ _MOST_IMMEDIATE = 200
 _MOST_EVENTS = 1000
 
 #: Rows of `Motion.event`: of every contact its sense and force before an event, the change of its force, and
-#: its normal load.
+#: its normal load; where contacts are coupled, the jump of the rate of its force in the place of the force.
 _SENSE, _BEFORE, _CHANGE, _NORMAL = 0, 1, 2, 3
 
 FOLLOWED, CHATTERS, UNDETERMINED = 0, 1, 2
@@ -160,6 +161,8 @@ def pass_event(problem, row, friction, tau, motion, box, counts, event, derive):
             scratch[_NORMAL, j] = value_at(series, normal_row(problem, j), x)
     if settles:
         determined = _settle(problem, row, friction, tau, motion, box, forces, (x, contact, side))
+    elif is_coupled(problem) and side != 0:
+        determined = begin_slip(problem, friction, motion, x, contact, side, box, scratch[_BEFORE])
     elif problem.loops:
         determined = release_in_loops(problem, row, friction, motion, forces, x, box)
     else:
@@ -188,6 +191,8 @@ def pass_event(problem, row, friction, tau, motion, box, counts, event, derive):
             else:
                 forces[j] = box[FORCE, j] - scratch[_BEFORE, j]
         through_event(problem, row, motion, forces, motion.watched, slope)
+        if is_coupled(problem) and side != 0:
+            through_slip(problem, motion, scratch[_BEFORE], motion.watched, slope)
         hold_tangent(problem, row, motion)
     return True
 

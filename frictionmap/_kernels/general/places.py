@@ -16,12 +16,13 @@ from ..structure.newton import solve_linear
 from .counts import MOVED
 from .creep import WITHOUT_LIMIT, keep_friction, restore_friction
 from .follow import FOLLOWED
+from .laws.coupled import is_coupled
 from .laws.kinds import has_force, holding_stiffness
 from .laws.speed import has_law, steepest, velocity_unit
 from .loops import factor_independent
 from .orbits import NO_REPEAT, REPEATS, newton
 from .pattern import stop_exactly
-from .problem import SECTION, F, H, P, Q, R, padded, varies
+from .problem import SECTION, SIZE, F, H, P, Q, R, padded, varies
 from .record import FORCES, HIGH, LOW, NOTHING, clear_record, displaced_by, pushed_by
 from .return_map import (
     begins_held,
@@ -138,6 +139,9 @@ def _place(problem, state, motion, j):
         place -= problem.base[j, d] * motion.series[modes + d, 0]
     if has_force(problem, j):
         place -= state[F, j] / holding_stiffness(problem, j)
+    for i in range(problem.spring.size if is_coupled(problem) else 0):
+        if i != j:
+            place -= problem.coupling.flexibility[j, i] * state[F, i]
     return place
 
 
@@ -153,7 +157,9 @@ def fill_flexibility(problem, places):
             places.flexibility[a, b] = 0.0
             for m in range(modes):
                 places.flexibility[a, b] += problem.chi[a, m] * problem.chi[b, m] / problem.squares[m]
-            if a == b and has_force(problem, a):
+            if is_coupled(problem):
+                places.flexibility[a, b] += problem.coupling.flexibility[a, b]
+            elif a == b and has_force(problem, a):
                 places.flexibility[a, a] += 1.0 / holding_stiffness(problem, a)
 
 
@@ -200,6 +206,8 @@ def _gain(problem, row, friction, motion, places, j):
     of elastic contacts.
     """
     contacts, modes = problem.chi.shape
+    if is_coupled(problem):
+        return math.sqrt(problem.coupling.stiffest[j]) * row.numbers[R] / row.numbers[H]
     if has_force(problem, j):
         return math.sqrt(holding_stiffness(problem, j) * row.numbers[R] ** 2 / row.numbers[H] ** 2)
     right = motion.solve[contacts]
@@ -279,6 +287,18 @@ def keep_orbit(problem, friction, halves, workspace):
 
 
 @kernel
+def _coupled_energy(problem, row, memory, places):
+    """Part of the square of `_difference` by the forces in coupled contacts, f.F f."""
+    sum_ = 0.0
+    for j in range(places.change.size):
+        for i in range(places.change.size):
+            force = memory.start[F, j] - places.orbit[F, j] - places.change[j]
+            other = memory.start[F, i] - places.orbit[F, i] - places.change[i]
+            sum_ += force * problem.coupling.flexibility[j, i] * other
+    return sum_ * row.numbers[H] ** 2 / row.numbers[R] ** 2
+
+
+@kernel
 def _difference(problem, row, memory, places):
     """Size of the difference of the motion in `memory.start` from the steady state with its places.
 
@@ -286,11 +306,13 @@ def _difference(problem, row, memory, places):
     """
     contacts, modes = problem.chi.shape
     square = 0.0
+    if is_coupled(problem):
+        square = _coupled_energy(problem, row, memory, places)
     for m in range(modes):
         place = memory.start[Q, m] - places.orbit[Q, m] - places.moved[m]
         velocity = memory.start[P, m] - places.orbit[P, m]
         square += velocity * velocity + row.stiffness[m] * place * place
-    for j in range(contacts):
+    for j in range(0 if is_coupled(problem) else contacts):
         if has_force(problem, j):
             force = memory.start[F, j] - places.orbit[F, j] - places.change[j]
             square += (
@@ -590,6 +612,42 @@ def fill_needs(problem, friction, state, workspace):
 
 
 @kernel
+def _shift_by(problem, record, places, shift):
+    """Fill the displacements under the constant forces `places.change`."""
+    for i in range(shift.size):
+        shift[i] = displaced_by(problem, record, places.moved, i)
+        shift[i] += pushed_by(problem, record, places.change, i)
+
+
+@kernel
+def place_at_start(problem, friction, state, workspace, shift):
+    """Fill the displacements of contacts and masses that all rest at the places where they begin.
+
+    They begin without forces: a load that displaces points beside the modes moves sliders away from 0.
+
+    Parameters
+    ----------
+    problem, friction, state, workspace, shift : see `place_after_start`
+
+    Returns
+    -------
+    bool : False if all begin at the place 0, beside which displacements are given
+    """
+    row, motion, memory = workspace.row, workspace.motion, workspace.memory
+    record, places = workspace.record, workspace.places
+    begins_held(problem, row, friction, state, motion, memory)
+    away = False
+    for j in range(places.rests.size):
+        places.change[j] = _place(problem, motion.state, motion, j)
+        away = away or abs(places.change[j]) > _ROUNDING * row.numbers[SIZE]
+    if not away or not _forces_of(places, places.change):
+        return False
+    _fill_moved(problem, places.change, places.moved)
+    _shift_by(problem, record, places, shift)
+    return True
+
+
+@kernel
 def place_after_start(problem, friction, state, cycles, workspace, shift):
     """Fill the displacements of contacts and masses that all rest, at the places to which the start leads.
 
@@ -613,7 +671,5 @@ def place_after_start(problem, friction, state, cycles, workspace, shift):
         return False
     _unload(problem, friction, places)
     _fill_moved(problem, places.change, places.moved)
-    for i in range(shift.size):
-        shift[i] = displaced_by(problem, record, places.moved, i)
-        shift[i] += pushed_by(problem, record, places.change, i)
+    _shift_by(problem, record, places, shift)
     return True

@@ -74,6 +74,17 @@ FLAT = Law(
 )  # fmt: skip
 
 
+class Coupling(NamedTuple):
+    """How forces in elastic contacts displace others beside the modes, see `laws.coupled`."""
+
+    flexibility: np.ndarray  # (N, N) F; (0, 0) where they do not
+    stiffest: np.ndarray  # (N,) diagonal of its inverse
+
+
+#: Contacts that only modes couple.
+UNCOUPLED = Coupling(np.zeros((0, 0)), np.zeros(0))
+
+
 class Problem(NamedTuple):
     """A system over r; m modes, N contacts, D channels, H harmonics."""
 
@@ -95,6 +106,7 @@ class Problem(NamedTuple):
     symmetric: bool  # L(tau + pi) = -L(tau), nothing else breaks the mirror symmetry
     law: Law = FLAT
     loops: bool = False  # whether rigid contacts close loops
+    coupling: Coupling = UNCOUPLED
 
 
 class Parts(NamedTuple):
@@ -177,6 +189,8 @@ class Motion(NamedTuple):
     segment: np.ndarray  # (N,) int: segment of the friction law in which a contact slides
     law_damping: np.ndarray  # (N,) derivative of its force by dz/dx
     event: np.ndarray  # (4, N) scratch of an event, see `follow`
+    springs: np.ndarray  # (N + 1,) int: coupled contacts that act as springs; the last: how many
+    grip: np.ndarray  # (N + 1, N) factors of their flexibility; its last row is scratch
 
 
 @kernel

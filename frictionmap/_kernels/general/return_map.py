@@ -8,6 +8,7 @@ import numpy as np
 from ..compiler import entry, kernel
 from .counts import FIRST_SENSE, LAST_SENSE, MOVED, REVERSALS
 from .follow import FOLLOWED, follow, follow_to_section
+from .laws.coupled import is_coupled, solve_springs
 from .laws.kinds import has_force, holding_stiffness, keeps_force, state_size
 from .laws.speed import count_rows, has_law
 from .loops import begin, factor_independent
@@ -380,6 +381,37 @@ def _keep_free_places(problem, row, motion, memory, matrix, weight):
 
 
 @kernel
+def _keep_coupled_places(problem, motion, memory, matrix, weight):
+    """Add weight U L as `keep_places` does, of coupled contacts.
+
+    L are the places y = g - F f of those at rest, or those sums of them that no rigid-body mode changes; U
+    changes their forces alone, and so their places by F_RR.
+    """
+    modes, contacts = problem.push.shape[0], problem.spring.size
+    left, right = memory.tied[modes], motion.grip[contacts]
+    tied, count = _tie_rigid(problem, memory) > 0, motion.springs[contacts]
+    for b in range(2 * modes + contacts):
+        i = b - 2 * modes
+        if b < modes:
+            moves = not is_rigid(problem, b)  # else it moves none of them, or the sums leave it out
+        else:
+            moves = i >= 0 and memory.senses[i] == 0  # the force of a slip is given
+        if not moves:
+            continue
+        for j in range(contacts):
+            left[j] = 0.0
+            if memory.counts[MOVED, j] == 0.0:
+                left[j] = problem.chi[j, b] if i < 0 else -problem.coupling.flexibility[j, i]
+        if tied:
+            _leave_out(memory, modes, modes)
+        for a in range(count):
+            right[a] = left[motion.springs[a]]
+        solve_springs(motion, right)
+        for a in range(count):
+            matrix[2 * modes + motion.springs[a], b] -= weight * right[a]
+
+
+@kernel
 def _fix(memory, i, size):
     """Leave coordinate i as it is in a Newton step."""
     for a in range(size):
@@ -419,6 +451,9 @@ def keep_places(problem, row, motion, memory, matrix, weight):
     for j in range(contacts):
         motion.sense[j] = 1 if memory.counts[MOVED, j] != 0.0 else 0
     factor_independent(problem, row, motion)  # as when all of them were held
+    if is_coupled(problem):
+        _keep_coupled_places(problem, motion, memory, matrix, weight)
+        return
     if _tie_rigid(problem, memory) > 0:
         _keep_free_places(problem, row, motion, memory, matrix, weight)
         return

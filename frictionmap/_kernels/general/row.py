@@ -108,6 +108,7 @@ def make_motion(problem):
         np.zeros((8, WIDTH)), np.zeros(1), np.zeros((size, rows)), np.zeros((2, size, rows)),
         np.zeros((contacts, rows)), np.zeros(rows), np.zeros(size + contacts),
         np.zeros(contacts, np.int64), np.zeros(contacts), np.zeros((4, contacts)),
+        np.zeros(contacts + 1, np.int64), np.zeros((contacts + 1, contacts)),
     )  # fmt: skip
 
 

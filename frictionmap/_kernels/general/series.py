@@ -11,7 +11,9 @@ import numpy as np
 
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store, total
+from .cholesky import factor, solve_factored
 from .crossings import value_at
+from .laws.coupled import couple_forces, displace_by_others, factor_springs, is_coupled
 from .laws.kinds import holding_stiffness, is_constrained, is_spare, is_spring, keeps_force
 from .laws.speed import constant_factor, law_forces, set_law_damping
 from .problem import INVERSE, LONG, NEXT, TERMS, WIDTH, F, H, first_contact_row
@@ -27,7 +29,10 @@ class Friction(NamedTuple):
 
 @kernel
 def factor_held(problem, row, motion):
-    """List the contacts that constraints hold, and factor their mobility (Cholesky); False if singular."""
+    """List the contacts that constraints hold, and factor their mobility; False if singular.
+
+    Where contacts are coupled there are none; then the flexibility of the springs is factored.
+    """
     contacts = motion.sense.size
     count = 0
     for j in range(contacts):
@@ -35,33 +40,15 @@ def factor_held(problem, row, motion):
             motion.held[count] = j
             count += 1
     motion.held[contacts] = count
-    for a in range(count):
-        for b in range(a + 1):
-            rest = row.mobility[motion.held[a], motion.held[b]]
-            for c in range(b):
-                rest -= motion.solve[a, c] * motion.solve[b, c]
-            if a > b:
-                motion.solve[a, b] = rest / motion.solve[b, b]
-            elif rest > 0.0:
-                motion.solve[a, a] = np.sqrt(rest)
-            else:
-                return False
-    return True
+    if is_coupled(problem):
+        return factor_springs(problem, motion)
+    return factor(row.mobility, motion.held, count, motion.solve)
 
 
 @inner_kernel
 def solve_held(motion, right):
     """Solve for the forces that hold contacts; `right` holds their accelerations and then the forces."""
-    contacts = motion.sense.size
-    count = motion.held[contacts]
-    for a in range(count):
-        for c in range(a):
-            right[a] -= motion.solve[a, c] * right[c]
-        right[a] /= motion.solve[a, a]
-    for a in range(count - 1, -1, -1):
-        for c in range(a + 1, count):
-            right[a] -= motion.solve[c, a] * right[c]
-        right[a] /= motion.solve[a, a]
+    solve_factored(motion.solve, motion.held[motion.sense.size], right)
 
 
 @inner_kernel
@@ -111,6 +98,8 @@ def _spring_forces(problem, row, k, motion, first):
             if k == 1:
                 z -= row.numbers[H] * problem.belt[j]
             motion.series[first + 2 * contacts + j, k] = holding_stiffness(problem, j) * z
+    if is_coupled(problem):
+        couple_forces(problem, motion, k, first)
 
 
 @inner_kernel
@@ -212,6 +201,8 @@ def _contact_motion(problem, row, motion, first, whole):
                 if problem.base[j, d] != 0.0:
                     place = place - load(series, (modes + d) * WIDTH + k) * problem.base[j, d]
             store(place, series, z + k)
+        if is_coupled(problem):
+            displace_by_others(problem, motion, j, first)
         for k in range(0, WIDTH - LANES, LANES):
             store(load(series, z + k + 1) * load(NEXT, k), series, w + k)
         series[first + contacts + j, 0] -= row.numbers[H] * problem.belt[j]
@@ -282,5 +273,5 @@ def advance(problem, row, x, motion):
         store(even + odd * x, motion.state, m)
         store(velocity, motion.state, motion.state.shape[1] + m)
     for j in range(contacts):
-        if keeps_force(problem, motion, j):
+        if keeps_force(problem, motion, j) or is_coupled(problem):
             motion.state[F, j] = value_at(motion.series, first + 2 * contacts + j, x)

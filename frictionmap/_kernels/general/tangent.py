@@ -9,6 +9,7 @@ before it.
 from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store
 from .keys import begin_key, find_key, put_digit
+from .laws.coupled import is_coupled
 from .laws.kinds import has_force, holding_stiffness, is_spare, is_spring, keeps_force, state_size
 from .laws.speed import has_law, key_bits
 from .problem import INVERSE, LONG, TERMS
@@ -28,21 +29,20 @@ def identity(problem, motion):
 
 
 @inner_kernel
-def _solve_columns(motion, right):
-    """`solve_held` for all columns; rows 0.. of `right` belong to the held contacts in their order."""
-    count = motion.held[motion.sense.size]
+def _solve_columns(factors, count, right):
+    """`solve_factored` for all columns of `right`."""
     size = right.shape[1]
     for i in range(0, size, LANES):
         for a in range(count):
             part = load(right, a * size + i)
             for c in range(a):
-                part = part - load(right, c * size + i) * motion.solve[a, c]
-            store(part * (1.0 / motion.solve[a, a]), right, a * size + i)
+                part = part - load(right, c * size + i) * factors[a, c]
+            store(part * (1.0 / factors[a, a]), right, a * size + i)
         for a in range(count - 1, -1, -1):
             part = load(right, a * size + i)
             for c in range(a + 1, count):
-                part = part - load(right, c * size + i) * motion.solve[c, a]
-            store(part * (1.0 / motion.solve[a, a]), right, a * size + i)
+                part = part - load(right, c * size + i) * factors[c, a]
+            store(part * (1.0 / factors[a, a]), right, a * size + i)
 
 
 @inner_kernel
@@ -64,6 +64,28 @@ def _spring_term(problem, row, motion, k, first):
             for m in range(modes):
                 at = first + ((k + 2) * modes + m) * size + i
                 store(load(columns, at) - force * (inverse * row.reaction[j, m]), columns, at)
+
+
+@inner_kernel
+def _coupled_term(problem, row, motion, k, first):
+    """Take the derivatives of the forces of coupled springs from term k + 2."""
+    modes = problem.push.shape[0]
+    columns, size = row.columns, motion.tangent.shape[1]
+    count = motion.springs[problem.spring.size]
+    for a in range(count):
+        for i in range(0, size, LANES):
+            part = filled(0.0)
+            for m in range(modes):
+                place = load(columns, first + (k * modes + m) * size + i)
+                part = part + place * problem.chi[motion.springs[a], m]
+            store(part, motion.forces, a * size + i)
+    _solve_columns(motion.grip, count, motion.forces)
+    for a in range(count):
+        for m in range(modes):
+            pull = INVERSE[k] * row.reaction[motion.springs[a], m]
+            for i in range(0, size, LANES):
+                at = first + ((k + 2) * modes + m) * size + i
+                store(load(columns, at) - load(motion.forces, a * size + i) * pull, columns, at)
 
 
 @inner_kernel
@@ -126,7 +148,7 @@ def _holding_columns(problem, row, motion, k, first):
             for m in range(modes):
                 part = part + load(columns, first + ((k + 2) * modes + m) * size + i) * problem.chi[j, m]
             store(part, motion.forces, a * size + i)
-    _solve_columns(motion, motion.forces)
+    _solve_columns(motion.solve, count, motion.forces)
     for a in range(count):
         j = motion.held[a]
         for m in range(modes):
@@ -163,6 +185,9 @@ def _onward(problem, row, motion, slot, x, table, at):
             store(velocity, table, into + (modes + m) * size + i)
     if count == 2 * modes:
         return
+    if is_coupled(problem):
+        _onward_coupled(problem, motion, table, at)
+        return
     for j in range(contacts):
         for i in range(size):
             force = 1.0 if i == 2 * modes + j else 0.0
@@ -171,6 +196,26 @@ def _onward(problem, row, motion, slot, x, table, at):
                     moved = table[at, m, i] - (1.0 if i == m else 0.0)
                     force += holding_stiffness(problem, j) * problem.chi[j, m] * moved
             table[at, 2 * modes + j, i] = force
+
+
+@inner_kernel
+def _onward_coupled(problem, motion, table, at):
+    """Fill the rows of the forces of coupled contacts after those of the modes; see `_onward`."""
+    modes, contacts = problem.push.shape[0], problem.spring.size
+    size, count = motion.tangent.shape[1], motion.springs[contacts]
+    for a in range(count):
+        for i in range(size):
+            motion.forces[a, i] = 0.0
+            for m in range(modes):
+                moved = table[at, m, i] - (1.0 if i == m else 0.0)
+                motion.forces[a, i] += problem.chi[motion.springs[a], m] * moved
+    _solve_columns(motion.grip, count, motion.forces)
+    for j in range(contacts):
+        for i in range(size):
+            table[at, 2 * modes + j, i] = 1.0 if i == 2 * modes + j else 0.0
+    for a in range(count):
+        for i in range(size):
+            table[at, 2 * modes + motion.springs[a], i] += motion.forces[a, i]
 
 
 @kernel
@@ -187,7 +232,10 @@ def _fill_pattern(problem, row, motion, slot):
         _free_columns(problem, row, motion, k, first)
         if k == 0:
             _own_force(problem, row, motion, slot)
-        _spring_term(problem, row, motion, k, first)
+        if not is_coupled(problem):
+            _spring_term(problem, row, motion, k, first)
+        elif k > 0:
+            _coupled_term(problem, row, motion, k, first)
         if has_law(problem):
             _law_term(problem, row, motion, k, first)
         if motion.held[contacts] > 0:
@@ -318,6 +366,22 @@ def through_event(problem, row, motion, drop, watched, slope):
 
 
 @kernel
+def through_slip(problem, motion, jumps, watched, slope):
+    """Carry the derivatives through the begin of a slip, at which the rates of coupled forces jump.
+
+    Parameters
+    ----------
+    problem, motion : Problem, Motion; the pattern is that of after the event
+    jumps : (N,) rates of the forces after the event less those before it
+    watched, slope : see `through_event`
+    """
+    modes = problem.push.shape[0]
+    for j in range(motion.sense.size):
+        for i in range(motion.tangent.shape[1] if motion.sense[j] == 0 else 0):
+            motion.tangent[2 * modes + j, i] += jumps[j] / slope * watched[i]
+
+
+@kernel
 def hold_tangent(problem, row, motion):
     """Take the velocities of held contacts from the derivatives: they are rounding error."""
     modes = problem.push.shape[0]
@@ -329,7 +393,7 @@ def hold_tangent(problem, row, motion):
             for m in range(modes):
                 part = part + load(motion.tangent, (modes + m) * size + i) * problem.chi[motion.held[a], m]
             store(part, motion.forces, a * size + i)
-    _solve_columns(motion, motion.forces)
+    _solve_columns(motion.solve, count, motion.forces)
     for a in range(count):
         for m in range(modes):
             reaction = row.reaction[motion.held[a], m]

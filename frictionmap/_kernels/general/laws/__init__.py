@@ -12,6 +12,7 @@ speed     friction over the sliding speed: segments, the events between them, wh
 coulomb   limits of Coulomb friction, which all laws have: watched quantities, their first zero
 rigid     held by a constraint; forces jump where it arrives, and where it is released for mu > 1
 elastic   a spring and a slider in series: its force is a coordinate of the state and never jumps
+coupled   elastic contacts in which forces displace others at once: their rates, and where slips begin
 contact   what the engine asks of a contact, whatever its law
 ========  ========================================================================================
 """

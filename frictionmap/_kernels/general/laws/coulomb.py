@@ -90,6 +90,13 @@ def first_event(problem, friction, motion, j):
 
 
 @kernel
+def slip_rate(problem, friction, motion, x, j):
+    """Velocity at x of the present step of a contact that slides, of an elastic one that of its slider."""
+    _watch_slide(problem, friction, motion, j, 0)
+    return motion.sense[j] * value_at(motion.scratch, WATCHED, x)
+
+
+@kernel
 def watched_slope(problem, friction, motion, x, j, side):
     """Rate of change, at the event (x, side) of a contact, of the quantity that is watched there.
 

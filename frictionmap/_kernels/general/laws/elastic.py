@@ -29,7 +29,7 @@ def force_weight(problem, row, j):
 
 
 @kernel
-def _limit_at(problem, friction, motion, x, j):
+def limit_at(problem, friction, motion, x, j):
     """Largest force at x of the present step."""
     return friction.kinetic[j] * value_at(motion.series, normal_row(problem, j), x)
 
@@ -37,7 +37,7 @@ def _limit_at(problem, friction, motion, x, j):
 @kernel
 def _end_slip(problem, friction, motion, x, j):
     """Let the slider rest."""
-    motion.state[F, j] = motion.sense[j] * _limit_at(problem, friction, motion, x, j)
+    motion.state[F, j] = motion.sense[j] * limit_at(problem, friction, motion, x, j)
     motion.fresh[j] = 2 * motion.sense[j]
     motion.sense[j] = 0
 
@@ -57,7 +57,7 @@ def change_phase(problem, friction, motion, x, contact, side):
     Elements of a bank slip together, and so do contacts of a symmetric structure.
     """
     if side != 0:
-        motion.state[F, contact] = side * _limit_at(problem, friction, motion, x, contact)
+        motion.state[F, contact] = side * limit_at(problem, friction, motion, x, contact)
         motion.sense[contact] = side
         motion.fresh[contact] = max(0, side * motion.fresh[contact] - 1)  # the force's zeros less one of y'
         return

@@ -1,0 +1,215 @@
+"""Elastic contacts that are coupled beside the modes: a force in one displaces the others at once.
+
+    F f = g - y,   f_E' = F_EE^-1 (g_E' - F_ES f_S'),   y_S' = g_S' - F_SE f_E' - F_SS f_S'
+
+F is their flexibility, g the displacements without their forces, y those of the sliders; contacts E act as
+springs and contacts S slip.  The displacement z in a contact is here that of the other end of a spring of the
+stiffness 1/F_jj, z_j = g_j - sum of F_ji f_i over i != j: all else is as of contacts that are not coupled.
+
+Where a contact begins to slip the rates of the other forces jump, and those of other sliders: each contact at
+its limit slips on, or its force falls.  That is unique, because F is positive definite.
+"""
+
+from ...compiler import inner_kernel, kernel
+from ...compiler.vectors import LANES, load, store
+from ..cholesky import factor, solve_factored
+from ..crossings import slope_at
+from ..problem import WIDTH, F, force_row, normal_row
+from .coulomb import slip_rate
+from .elastic import limit_at
+from .kinds import is_spring
+
+#: Share of a rate, over the size of its terms, that rounding errors may be.
+_TIE = 1e-12
+
+#: Rounds in which all contacts that are wrong are flipped, and then the last one of them alone, which ends
+#: for any positive definite F.
+_BLOCKS, _MOST_PIVOTS = 10, 2000
+
+#: Rows of the scratch: the side of its range that a contact is at, or 0; rate of its force there; rate of the
+#: displacement without forces, and the size of its terms; rates of the force and of the slider.
+_SIDE, _ALONG, _FREE, _SIZE, _FORCE, _SLIDE = 0, 1, 2, 3, 4, 5
+
+
+@inner_kernel
+def is_coupled(problem):
+    """Whether forces in contacts displace others beside the modes; all contacts are elastic then."""
+    return problem.coupling.flexibility.shape[0] > 0
+
+
+@kernel
+def factor_springs(problem, motion):
+    """List the contacts that act as springs, and factor their flexibility."""
+    contacts = motion.sense.size
+    count = 0
+    for j in range(contacts):
+        if is_spring(problem, motion, j):
+            motion.springs[count] = j
+            count += 1
+    motion.springs[contacts] = count
+    return factor(problem.coupling.flexibility, motion.springs, count, motion.grip)
+
+
+@inner_kernel
+def solve_springs(motion, right):
+    """Solve for the forces of the springs; `right` holds their displacements and then the forces."""
+    solve_factored(motion.grip, motion.springs[motion.sense.size], right)
+
+
+@inner_kernel
+def couple_forces(problem, motion, k, first):
+    """Replace term k of the forces of springs, each as if it were alone, by those of all."""
+    contacts = motion.sense.size
+    flexibility, series = problem.coupling.flexibility, motion.series
+    forces, right = first + 2 * contacts, motion.grip[contacts]
+    for a in range(motion.springs[contacts]):
+        j = motion.springs[a]
+        right[a] = flexibility[j, j] * series[forces + j, k]
+        for i in range(contacts):
+            if motion.sense[i] != 0:
+                right[a] -= flexibility[j, i] * series[forces + i, k]
+    solve_springs(motion, right)
+    for a in range(motion.springs[contacts]):
+        series[forces + motion.springs[a], k] = right[a]
+
+
+@inner_kernel
+def displace_by_others(problem, motion, j, first):
+    """Add what the forces in the other contacts displace to the series of z of contact j."""
+    contacts, series = motion.sense.size, motion.series
+    z = (first + j) * WIDTH
+    for i in range(contacts):
+        if i != j:
+            force, share = (first + 2 * contacts + i) * WIDTH, problem.coupling.flexibility[j, i]
+            for k in range(0, WIDTH, LANES):
+                store(load(series, z + k) - load(series, force + k) * share, series, z + k)
+
+
+@kernel
+def _fill_free(problem, friction, motion, x, box):
+    """Fill what is known of the rates at x of the present step: those of limits, and without forces."""
+    contacts, series = motion.sense.size, motion.series
+    flexibility = problem.coupling.flexibility
+    for j in range(contacts):
+        box[_FORCE, j] = slope_at(series, force_row(problem, j), x)
+    for j in range(contacts):
+        box[_SIDE, j] = motion.sense[j]
+        box[_ALONG, j] = friction.kinetic[j] * slope_at(series, normal_row(problem, j), x)
+        slide = slip_rate(problem, friction, motion, x, j) if motion.sense[j] != 0 else 0.0
+        box[_FREE, j], box[_SIZE, j] = slide, abs(slide)
+        for i in range(contacts):
+            part = flexibility[j, i] * box[_FORCE, i]
+            box[_FREE, j] += part
+            box[_SIZE, j] += abs(part)
+
+
+@kernel
+def _rates_of_choice(problem, motion, box):
+    """Fill the rates of forces and sliders for the pattern in the motion."""
+    contacts = motion.sense.size
+    flexibility, right = problem.coupling.flexibility, motion.grip[contacts]
+    if not factor_springs(problem, motion):
+        return False
+    for j in range(contacts):
+        if motion.sense[j] != 0:
+            box[_FORCE, j] = motion.sense[j] * box[_ALONG, j]
+    for a in range(motion.springs[contacts]):
+        j = motion.springs[a]
+        right[a] = box[_FREE, j]
+        for i in range(contacts):
+            if motion.sense[i] != 0:
+                right[a] -= flexibility[j, i] * box[_FORCE, i]
+    solve_springs(motion, right)
+    for a in range(motion.springs[contacts]):
+        box[_FORCE, motion.springs[a]] = right[a]
+    for j in range(contacts):
+        box[_SLIDE, j] = 0.0
+        if motion.sense[j] != 0:
+            box[_SLIDE, j] = box[_FREE, j]
+            for i in range(contacts):
+                box[_SLIDE, j] -= flexibility[j, i] * box[_FORCE, i]
+    return True
+
+
+@inner_kernel
+def _falls(problem, box, j):
+    """How fast the force of a contact at its limit falls below it, over what is rounding error."""
+    size = _TIE * box[_SIZE, j] * problem.coupling.stiffest[j]
+    return (box[_ALONG, j] - box[_SIDE, j] * box[_FORCE, j]) - size, size
+
+
+@kernel
+def _is_wrong(problem, motion, box, j):
+    """Whether a contact at its limit slips against its sense, or is held and exceeds its limit."""
+    if box[_SIDE, j] == 0.0:
+        return False
+    if motion.sense[j] != 0:
+        return motion.sense[j] * box[_SLIDE, j] < -_TIE * box[_SIZE, j]
+    below, size = _falls(problem, box, j)
+    return below < -2.0 * size
+
+
+@kernel
+def _flip_wrong(problem, motion, box, alone):
+    """Flip the contacts that are wrong, or the last one alone; how many there were."""
+    count, last = 0, -1
+    for j in range(motion.sense.size):
+        if _is_wrong(problem, motion, box, j):
+            count, last = count + 1, j
+            box[_SIDE, j] = 2.0 * box[_SIDE, j]  # marked
+    for j in range(motion.sense.size):
+        if abs(box[_SIDE, j]) == 2.0:
+            box[_SIDE, j] *= 0.5
+            if j == last or not alone:
+                motion.sense[j] = 0 if motion.sense[j] != 0 else int(box[_SIDE, j])
+    return count
+
+
+@kernel
+def _begin_phases(problem, friction, motion, x, contact, box):
+    """Set the forces of the contacts at their limits, and the leading zeros of what is watched in them."""
+    for j in range(motion.sense.size):
+        side = int(box[_SIDE, j])
+        if side == 0:
+            continue
+        motion.state[F, j] = side * limit_at(problem, friction, motion, x, j)
+        if motion.sense[j] == 0:
+            below, _ = _falls(problem, box, j)
+            motion.fresh[j] = side if below > 0.0 else 2 * side
+        elif abs(box[_SLIDE, j]) > _TIE * box[_SIZE, j]:
+            motion.fresh[j] = 0
+        elif j == contact:
+            motion.fresh[j] = max(0, side * motion.fresh[j] - 1)  # the force's zeros less one of y'
+
+
+@kernel
+def begin_slip(problem, friction, motion, x, contact, side, box, jumps):
+    """Begin the slip of a contact whose force is at its limit, and what that changes in other contacts there.
+
+    Parameters
+    ----------
+    problem, friction, motion : Problem, Friction, Motion; the state is that of the event
+    x, contact, side : the event, see `coulomb.first_event`
+    box : (BOX_ROWS, N) scratch
+    jumps : (N,) filled with the jumps of the rates of the forces
+
+    Returns
+    -------
+    bool : False if no pattern was found
+    """
+    _fill_free(problem, friction, motion, x, box)
+    for j in range(motion.sense.size):
+        jumps[j] = -box[_FORCE, j]
+    motion.sense[contact] = side
+    box[_SIDE, contact] = side
+    for pivot in range(_MOST_PIVOTS):
+        if not _rates_of_choice(problem, motion, box):
+            return False
+        if _flip_wrong(problem, motion, box, pivot >= _BLOCKS) == 0:
+            break
+        if pivot == _MOST_PIVOTS - 1:
+            return False
+    for j in range(motion.sense.size):
+        jumps[j] += box[_FORCE, j]
+    _begin_phases(problem, friction, motion, x, contact, box)
+    return True

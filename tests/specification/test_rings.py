@@ -161,3 +161,21 @@ def test_all_sectors_of_a_ring_of_rigid_contacts_move_alike_in_every_cell_of_a_m
     assert (found.status.values == 0).all()
     assert (ranges.min(axis=-1) > 0.0).any()
     assert np.ptp(ranges, axis=-1).max() < 1e-10 * ranges.max()
+
+
+@pytest.mark.parametrize("ground", [False, True])
+def test_cells_that_begin_from_their_neighbours_are_those_that_begin_from_rest(ground):
+    """Sliding contacts of a loop had the friction of the neighbour's cell in them."""
+    rigid = [{"kind": "between-masses", "masses": [1, "next.1"]}]
+    rigid += [{"kind": "fixed-wall", "masses": 2, "ratio": 0.3}] if ground else []
+    system = _ring(rigid, count=3)
+    beta = np.array([0.1, 0.15, 0.2, 0.3, 0.35])
+
+    def ranges(beta):
+        found = fm.sweep(system, r=[1.8], beta=beta, mu=[1.0], outputs=["contact_peak_to_peak"])
+        return found.contact_peak_to_peak.values[0, 0]
+
+    for cell, one in zip(ranges(beta), beta, strict=True):
+        alone = ranges([one])[0]
+        assert alone.min() > 0.0
+        assert np.abs(cell - alone).max() < 1e-11 * alone.max()

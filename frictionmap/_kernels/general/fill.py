@@ -350,8 +350,7 @@ def _solve_cell(problem, grid, m, i, b, friction, workspace, trail):
     _set_friction(grid, m, i, b, friction)
     if fit_row(problem, i, friction, workspace):
         trail.count[0] = 0
-    # the patterns of loops are known along a motion from rest only
-    if trail.count[0] > 0 and is_unique(problem, friction) and not problem.loops:
+    if trail.count[0] > 0 and is_unique(problem, friction):
         _begin_ahead(grid.beta[i, b], trail, memory)
         found, halves, multiplier = solve_from(
             problem, friction, state, grid.cycles, grid.tolerance, workspace, RANGES, True

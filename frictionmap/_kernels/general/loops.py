@@ -77,11 +77,14 @@ def _extend_basis(problem, row, motion):
 
 @kernel
 def factor_independent(problem, row, motion):
-    """`factor_held`, of held contacts that may close loops."""
+    """`factor_held`, of held contacts that may close loops.
+
+    Those that slide have the force of their slide, never one that is kept from before.
+    """
     if not problem.loops:
         return factor_held(problem, row, motion)
     for j in range(motion.sense.size):
-        motion.idle[j] = True
+        motion.idle[j] = motion.sense[j] == 0
     return _extend_basis(problem, row, motion)
 
 

@@ -173,7 +173,7 @@ class Motion(NamedTuple):
     sense: np.ndarray  # (N,) int: 1, -1 sliding up, down; 0 held
     fresh: np.ndarray  # (N,) int: leading coefficients of the watched series that are zero by definition; of
     # a spring at its limit with the sign of that
-    idle: np.ndarray  # (N,) bool: springs whose ends are both at rest, see `elastic.rest_springs`; rigid
+    idle: np.ndarray  # (N,) bool: springs whose ends are both at rest, see `elastic.rest_springs`; held rigid
     # contacts that others keep at rest, see `loops`
     series: np.ndarray  # (m + D + 4 N, WIDTH)
     moves: np.ndarray  # (LONG, M) the displacements of modes, term by term

@@ -19,6 +19,7 @@ partial          least friction at which one contact sticks while the others mov
 starts           initial states: at rest, or in a large sliding motion
 still            masses that do not move
 outputs          outputs of maps and responses: what each is computed from, and for which contacts
+cyclic           rings under travelling loads: the sectors that differ, and the others from them
 maps             the cells of a map, on several threads
 resting_starts   motions from many states in which a contact is at its limit of friction (mu > 1)
 dataset          maps and boundaries as labelled variables

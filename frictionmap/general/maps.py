@@ -11,6 +11,7 @@ from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines, stays_at_rest
 from .certificate import certified_beta
+from .cyclic import keep_sectors, kept_rows, spread
 from .held import held_ranges
 from .observed import has_residual, observed_rows, of_contacts_last
 from .outputs import allocate
@@ -76,11 +77,19 @@ def solve_cells(
     starts = initial_states(system, problem, modal, solver.start)
     # the place of a free structure is arbitrary; that of contacts that close a loop is not looked for
     settled = places and not general.free and not general.loop
+    observed, alike = masses or further or has_residual(system), None
+    outputs = observed_rows(system, modal, further)
+    if unique.all() and "multiplier" not in solver.outputs:  # some deviations are not alike in all sectors
+        alike = keep_sectors(system, problem, starts)
+    if alike is not None:
+        kept, starts = alike
+        problem, outputs = kept.problem, kept_rows(system, kept, further)
+        kinetic, static = kinetic[kept.contacts], static[:, kept.contacts]
+    if not observed:
+        outputs = np.empty((0, problem.squares.size))
     grid = Grid(beta, kinetic, static, stuck_from, starts, settled, float(solver.cycles), solver.tolerance)
-    outputs = np.empty((0, modal.phi.shape[1]))
-    if masses or further or has_residual(system):
-        outputs = observed_rows(system, modal, further)
-    found = allocate((mu.size, r.size, many), general.count, len(outputs), problem.law.speed.shape[1])
+    contacts, segments = problem.spring.size, problem.law.speed.shape[1]
+    found = allocate((mu.size, r.size, many), contacts, len(outputs), segments)
     found.unique[:] = sure
     cancel = np.zeros(1, np.uint8)
     rows = range(0, mu.size * r.size, max(1, _IN_A_JOB // max(many, 1)))
@@ -93,7 +102,7 @@ def solve_cells(
     except BaseException:
         cancel[0] = 1  # the kernel checks it at every cell
         raise
-    found = of_contacts_last(system, found)
+    found = of_contacts_last(system, found if alike is None else spread(found, alike[0]))
     for at_zero in np.flatnonzero(r == 0.0):
         _put_r_zero(found, int(at_zero), beta[at_zero], beta_stick)
     _put_stuck(system, r, found)

@@ -70,18 +70,23 @@ def general_of(system: System) -> ContactSystem:
     return system.general
 
 
+def participation(vectors: np.ndarray, phi: np.ndarray) -> np.ndarray:
+    """Displacements in the contacts per mode, (N, m), without those that are rounding error."""
+    chi = np.asarray(vectors @ phi)
+    small = (
+        64.0 * np.finfo(float).eps * np.linalg.norm(phi, axis=0) * np.linalg.norm(vectors, axis=1)[:, None]
+    )
+    chi[np.abs(chi) <= small] = 0.0
+    return chi
+
+
 def modal_system(system: System) -> ModalSystem:
     """Modes of the structure without friction, and the participation of the contacts."""
     modes = system.modes
     general = general_of(system)
     phi, w = modes.phi, modes.w
     damping = modes.damping_in_modes()
-    vectors = general.vectors
-    chi = vectors @ phi
-    small = (
-        64.0 * np.finfo(float).eps * np.linalg.norm(phi, axis=0) * np.linalg.norm(vectors, axis=1)[:, None]
-    )
-    chi[np.abs(chi) <= small] = 0.0
+    chi = participation(general.vectors, phi)
     found = ModalSystem(w**2, phi, damping, chi, modes.mass, modes.stiffness, modes.damping)
     if general.points is None:
         return found

@@ -193,7 +193,7 @@ class ContactSystem:
         found = self.vectors[:1]
         for vector in self.vectors[1:]:
             more = np.vstack((found, vector))
-            found = more if _rank(more) == len(more) else found
+            found = more if rank_of(more) == len(more) else found
         return found
 
     @property
@@ -488,15 +488,15 @@ def _describe_loop(groups: Sequence[MergedContact]) -> str:
         return ""
     w = np.array([groups[k].vector for k in rigid])
     w = w / np.abs(w).max(axis=1, keepdims=True)  # in modes, entries have any size
-    rank = _rank(w)
+    rank = rank_of(w)
     if rank == len(rigid):
         return ""
     # a contact is in a loop if the others move all that it moves
-    loop = [rigid[k] + 1 for k in range(len(rigid)) if _rank(np.delete(w, k, axis=0)) == rank]
+    loop = [rigid[k] + 1 for k in range(len(rigid)) if rank_of(np.delete(w, k, axis=0)) == rank]
     return ", ".join(map(str, loop))
 
 
-def _rank(w: np.ndarray) -> int:
+def rank_of(w: np.ndarray) -> int:
     """Number of linearly independent rows of W (contacts, n)."""
     return int(np.linalg.matrix_rank(w, tol=_PARALLEL * w.shape[1])) if w.size else 0
 

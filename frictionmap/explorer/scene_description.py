@@ -11,6 +11,7 @@ from ..units.scales import scales_of
 from ..units.table import UNITS, handy_unit
 from ..version import __version__
 from .contacts import is_placed, shown_contact
+from .drawing import drawing_of
 from .goal import describe_goals
 from .lines import lines_of
 from .pieces import marks
@@ -112,6 +113,7 @@ def describe_scene(scene: Scene, view: View) -> dict[str, Any]:
         "contacts": _contacts(scene, view),
         "placed": is_placed(scene.system),
         "quick": view.is_quick,
+        "drawing": drawing_of(view.system),
         "goals": describe_goals(),
         "presets": [{"key": key, "label": preset.label} for key, preset in PRESETS.items()],
         **{key: value for key, value in description(scene, view).items() if key != "contact"},

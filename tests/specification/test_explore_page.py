@@ -370,7 +370,7 @@ def test_the_whole_legend_is_seen_on_a_laptop(browser, one):
 def test_errors_of_the_address_are_reported_in_a_line_each(browser, one):
     address = "#mu=abc&r=3,1&damping_ratios=-1&zeta=0.1&beta=0,0.9&cell=1&quantity=stuck_fraction"
     with page_of(browser, one.url + address) as page:
-        keys = "r, beta, quantity, cell, start, contact, cut, mu, damping_ratios"
+        keys = "r, beta, quantity, cell, start, contact, cut, lecture, mu, damping_ratios"
         assert page.inner_text("#notice") == (
             "mu must be a number >= 1; got abc; used: 1\n"
             "r must be two increasing numbers >= 0 separated by a comma; got 3,1; used: 0,2\n"
@@ -419,7 +419,8 @@ def test_compiling_is_said(browser, one):
         page.click("[data-zoom=in]")
         page.wait_for_function("() => document.querySelector('#message').innerText.includes('compiling')")
         assert page.inner_text("#message") == (
-            "First use: compiling, about 28 s left. This happens once per machine."
+            "First use: compiling, about 28 s left. This happens once per machine. "
+            "Until then the map before is shown."
         )
         page.unroute("**/state?**")
         page.unroute("**/map?**")

@@ -14,6 +14,7 @@ import { hasUnit } from "./field.js";
  * @property {string} quantity             what the cells are coloured by
  * @property {[number, number] | null} cell    the cell that is kept, r and beta
  * @property {"" | "r" | "beta"} cut       along what the response curve goes
+ * @property {"" | "on"} lecture           whether type is large, and little else than map and motion is shown
  */
 
 /** The view that a scene begins with. @returns {View} */
@@ -28,6 +29,7 @@ export function firstView(scene) {
     quantity: scene.quantities[0].key,
     cell: null,
     cut: "",
+    lecture: "",
   };
 }
 
@@ -42,7 +44,8 @@ function joined(pairs) {
 
 /** Keys of a view that determine its cells, as sent to the server. */
 function pairsOf(view, scene) {
-  const pairs = [["r", view.r.join(",")], ["beta", view.beta.join(",")], ["mu", view.mu]];
+  const pairs = [["r", view.r.join(",")], ["beta", view.beta.join(",")]];
+  if (scene.sliders.some(({ key }) => key === "mu")) pairs.push(["mu", view.mu]);
   if (view.start !== scene.start) pairs.push(["start", view.start]);
   if (view.contact !== scene.contacts[0].key) pairs.push(["contact", view.contact]);
   return [...pairs, ...Object.entries(view.numbers)];
@@ -80,6 +83,7 @@ export function hashOf(view, scene) {
   if (view.quantity !== scene.quantities[0].key) pairs.push(["quantity", view.quantity]);
   if (view.cell) pairs.push(["cell", view.cell.join(",")]);
   if (view.cut) pairs.push(["cut", view.cut]);
+  if (view.lecture) pairs.push(["lecture", view.lecture]);
   return `#${joined(pairs)}`;
 }
 
@@ -174,12 +178,14 @@ function place(places) {
 /** The keys of an address; a page that keeps maps for some places of its sliders has no others to offer. @returns {Map<string, Key>} */
 function validKeys(scene, places) {
   const shown = [["r", range()], ["beta", range()], ["quantity", choice(scene.quantities.map(({ key }) => key))], ["cell", cell()]];
-  if (places) return new Map([...shown, ...scene.sliders.map(({ key }) => [key, place(places[key])])]);
+  const lecture = ["lecture", choice(["on"])];
+  if (places) return new Map([...shown, lecture, ...scene.sliders.map(({ key }) => [key, place(places[key])])]);
   return new Map([
     ...shown,
     ["start", choice(["rest", "moving"])],
     ["contact", choice(scene.contacts.map(({ key }) => key))],
     ["cut", choice(["r", "beta"])],
+    lecture,
     ...scene.sliders.map((slider) => [slider.key, number(slider)]),
   ]);
 }

@@ -54,16 +54,41 @@ export function short(value, digits = 4) {
 /** Cache of colours of the style sheet, as a look-up takes as long as drawing a line. */
 const known = new Map();
 
-/** The colour that the style sheet gives a name. */
+/** The colour that the style sheet gives a name, as a canvas takes it: system colours of forced colours are resolved. */
 export function colour(name) {
-  if (!known.has(name)) known.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  if (!known.has(name)) {
+    const probe = document.createElement("i");
+    [probe.style.color, probe.hidden] = [`var(--${name})`, true];
+    probe.style.forcedColorAdjust = "none";
+    document.body.append(probe);
+    known.set(name, getComputedStyle(probe).color);
+    probe.remove();
+  }
   return known.get(name);
 }
 
-/** Clear the cache after a change of the colour scheme. */
+/** Clear the cache after a change of the colour scheme, or of the size of the type. */
 export function forgetColours() {
   known.clear();
 }
+
+/** Pixels of the root's type that lengths in canvases are meant for. */
+const TYPE = 14;
+
+/** A length in a canvas, which grows with the type of the page. */
+export function sized(length) {
+  const key = "size of the type";
+  if (!known.has(key)) known.set(key, Math.max(1, parseFloat(getComputedStyle(document.documentElement).fontSize) / TYPE));
+  return length * known.get(key);
+}
+
+/** The font of a canvas, of a height that grows with the type of the page. */
+export function font(height) {
+  return `${sized(height)}px system-ui, sans-serif`;
+}
+
+/** Media in which the colours of the page are others. */
+export const SCHEMES = ["(prefers-color-scheme: dark)", "(forced-colors: active)", "print"];
 
 /** Masses drawn in one chart; more would cover each other. */
 export const DRAWN = 6;

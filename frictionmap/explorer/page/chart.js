@@ -1,8 +1,6 @@
 // Small charts: lines over two axes, bars, background bands.
 
-import { colour, keepTo, logTicks, sharp, short, ticks } from "./axes.js";
-
-const FONT = "11px system-ui, sans-serif";
+import { colour, font, keepTo, logTicks, sharp, short, sized, ticks } from "./axes.js";
 
 /**
  * @typedef {object} Chart
@@ -22,8 +20,8 @@ const FONT = "11px system-ui, sans-serif";
 /** Draw a chart on a canvas; returns its area, and where values are in it. @param {HTMLCanvasElement} canvas @param {Chart} chart */
 export function draw(canvas, chart) {
   const { pen, width, height } = sharp(canvas);
-  const [left, right] = [chart.left ?? 46, chart.right ?? 8];
-  const area = { x: left, y: 6, width: width - left - right, height: height - 6 - (chart.xName ? 34 : 20) };
+  const [left, right] = [sized(chart.left ?? 46), sized((chart.right ?? 8) + 6) - 6];
+  const area = { x: left, y: 6, width: width - left - right, height: height - 6 - sized(chart.xName ? 34 : 20) };
   const warp = chart.log ? Math.log : (value) => value;
   const [low, high] = chart.y.map(warp);
   const x = (value) => area.x + ((value - chart.x[0]) / (chart.x[1] - chart.x[0])) * area.width;
@@ -55,17 +53,17 @@ function spread(pen, found, x) {
 }
 
 function drawGrid(pen, chart, area, x, y) {
-  [pen.font, pen.fillStyle, pen.strokeStyle, pen.lineWidth] = [FONT, colour("faint"), colour("rule"), 1];
+  [pen.font, pen.fillStyle, pen.strokeStyle, pen.lineWidth] = [font(11), colour("faint"), colour("rule"), 1];
   const bottom = area.y + area.height;
   pen.beginPath();
   [pen.textAlign, pen.textBaseline] = ["center", "top"];
-  for (const { value, text } of spread(pen, chart.xTicks ?? ticks(chart.x, Math.max(3, area.width / 60)), x)) {
+  for (const { value, text } of spread(pen, chart.xTicks ?? ticks(chart.x, Math.max(3, area.width / sized(60))), x)) {
     pen.moveTo(x(value), area.y);
     pen.lineTo(x(value), bottom);
     pen.fillText(text, x(value), bottom + 4);
   }
   [pen.textAlign, pen.textBaseline] = ["right", "middle"];
-  for (const { value, text } of chart.log ? logTicks(chart.y) : ticks(chart.y, Math.max(3, area.height / 30))) {
+  for (const { value, text } of chart.log ? logTicks(chart.y) : ticks(chart.y, Math.max(3, area.height / sized(30)))) {
     pen.moveTo(area.x, y(value));
     pen.lineTo(area.x + area.width, y(value));
     pen.fillText(text.length > 6 ? short(value, 2) : text, area.x - 4, y(value));
@@ -73,11 +71,11 @@ function drawGrid(pen, chart, area, x, y) {
   pen.stroke();
   if (chart.xName) {
     [pen.textAlign, pen.textBaseline] = ["center", "bottom"];
-    pen.fillText(chart.xName, area.x + area.width / 2, bottom + 33);
+    pen.fillText(chart.xName, area.x + area.width / 2, bottom + sized(33));
   }
   if (chart.yName) {
     pen.save();
-    pen.translate(9, area.y + area.height / 2);
+    pen.translate(sized(9), area.y + area.height / 2);
     pen.rotate(-Math.PI / 2);
     [pen.textAlign, pen.textBaseline] = ["center", "middle"];
     pen.fillText(chart.yName, 0, 0);
@@ -97,7 +95,7 @@ function drawBars(pen, chart, area, x, y) {
 
 /** A line that breaks where there is no number. */
 function drawLine(pen, line, x, y, area) {
-  [pen.strokeStyle, pen.lineWidth, pen.lineJoin] = [line.colour, line.width ?? 1.6, "round"];
+  [pen.strokeStyle, pen.lineWidth, pen.lineJoin] = [line.colour, sized(line.width ?? 1.6), "round"];
   pen.setLineDash(line.dash ?? []);
   pen.beginPath();
   let drawn = false;

@@ -2,7 +2,7 @@
 
 import { DRAWN, colour, massColour } from "./axes.js";
 import { around, draw } from "./chart.js";
-import { keyLine, make } from "./dom.js";
+import { keyLine, make, spaced } from "./dom.js";
 import { row } from "./packet.js";
 
 /** A canvas in a frame that marks a moment over it. */
@@ -15,14 +15,14 @@ function canvas(className, label) {
 /** Charts of one contact, under its name. */
 function figureOf(name, still) {
   const key = keyLine(colour("stop"), still, "solid", 9);
-  const caption = make("figcaption", {}, make("b", {}, name), keyLine(colour("ink"), "z"), keyLine(colour("warm"), "friction"), key);
+  const caption = make("figcaption", {}, ...spaced([make("b", {}, name), keyLine(colour("ink"), "z"), keyLine(colour("warm"), "friction"), key]));
   const time = make("div", {}, canvas("of-contact", `displacement in ${name} over time`), canvas("of-contact", `friction force in ${name} over time`));
   return make("figure", {}, caption, make("div", { className: "history" }, time, canvas("of-loop", `friction force over displacement in ${name}`)));
 }
 
 /** Make the charts of a motion. @param {HTMLElement} element @param {object} motion  as the server sends it */
 export function layOut(element, motion) {
-  const masses = make("figure", {}, make("figcaption", {}, ...namesOf(motion)), canvas("of-masses", "displacements of the masses over time"));
+  const masses = make("figure", {}, make("figcaption", {}, ...spaced(namesOf(motion))), canvas("of-masses", "displacements of the masses over time"));
   element.replaceChildren(masses, ...motion.contacts.map((name, k) => figureOf(name, motion.still[k])));
 }
 

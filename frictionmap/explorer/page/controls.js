@@ -49,7 +49,7 @@ export class Controls {
     if (!fixed) this.#presets(scene.presets);
     this.#choice("quantity", "colour", scene.quantities);
     if (fixed) return;
-    if (scene.contacts.length > 1) this.#choice("contact", "contact", scene.contacts);
+    if (scene.contacts.length > 1) this.#choice("contact", "contact", scene.contacts).classList.add("contact");
     this.#starts();
   }
 
@@ -75,6 +75,7 @@ export class Controls {
     const select = made.querySelector("select");
     this.#fill(select, options);
     select.addEventListener("change", () => this.onChange({ [key]: select.value }));
+    return made;
   }
 
   #fill(select, options) {

@@ -13,6 +13,11 @@ export function make(tag, properties = {}, ...children) {
   return made;
 }
 
+/** Texts beside each other, with spaces between them: they are read, searched and copied as words of their own. */
+export function spaced(parts) {
+  return parts.flatMap((part, k) => (k ? [" ", part] : [part]));
+}
+
 /** A line of the legend with its meaning. */
 export function keyLine(ink, text, dash = "solid", width = 2) {
   return make("span", {}, make("span", { className: "key-line", style: { borderTop: `${width}px ${dash} ${ink}` } }), text);

@@ -122,7 +122,7 @@ function keyed(event, stage, does) {
   else if (event.key === "-" || event.key === "_") does.zoom([ZOOM, ZOOM], middle);
   else if (event.key === "0" || event.key === "Home") does.home();
   else if (event.key === "Escape") does.release();
-  else if (["r", "b", "p", "q", "?"].includes(event.key)) does.key(event.key);
+  else if (["r", "b", "e", "l", "p", "q", "?"].includes(event.key)) does.key(event.key);
   else return;
   event.preventDefault();
 }

@@ -1,9 +1,9 @@
 // The page of motions in time: a record is chosen, friction is a slider, and the motion follows.
 
-import { colour, forgetColours, massColour } from "./axes.js";
+import { SCHEMES, colour, forgetColours, massColour } from "./axes.js";
 import { around, draw } from "./chart.js";
 import { Controls } from "./controls.js";
-import { keyLine, make, tableRow } from "./dom.js";
+import { keyLine, make, spaced, tableRow } from "./dom.js";
 import { row } from "./packet.js";
 import { Server } from "./source.js";
 
@@ -93,7 +93,7 @@ function paint() {
   find("#numbers").replaceChildren(...shown.rows.map(([name, text]) => tableRow(name, text, "words")));
   const of = (word, numbers) => (numbers.length > 1 ? numbers.map((number, k) => keyLine(massColour(k), `${word} ${number}`)) : []);
   const stuck = make("span", {}, make("span", { className: "band" }), "all contacts stick");
-  find("#key").replaceChildren(...of("mass", shown.masses), ...of("contact", shown.contacts), stuck);
+  find("#key").replaceChildren(...spaced([...of("mass", shown.masses), ...of("contact", shown.contacts), stuck]));
 }
 
 /** Show a record that is being added, or why it is refused. */
@@ -156,6 +156,6 @@ async function begin() {
 }
 
 const repaint = () => shown && paint();
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (forgetColours(), repaint()));
+for (const scheme of SCHEMES) matchMedia(scheme).addEventListener("change", () => (forgetColours(), repaint()));
 new ResizeObserver(repaint).observe(find("#figure"));
 begin().catch((error) => say(error.message));

@@ -2,7 +2,7 @@
 
 import { short } from "./axes.js";
 import { CLASS, rampColour } from "./colours.js";
-import { keyLine, make } from "./dom.js";
+import { keyLine, make, spaced } from "./dom.js";
 
 /** Name of a class, with the range of stops if it comprises several numbers. */
 function nameOf(picture, index, look) {
@@ -45,13 +45,13 @@ export function legend(element, picture) {
   const entries = picture.scale ? [scaleEntry(picture.quantity.label, picture.scale)] : [];
   for (const { lower, dashes, meaning } of picture.boundaries) {
     const name = make("span", {}, ...(lower ? ["β", make("sub", {}, lower)] : []));
-    entries.push(make("span", {}, keyLine("currentColor", name, styleOf(dashes)), meaning));
+    entries.push(make("span", {}, keyLine("currentColor", name, styleOf(dashes)), " ", meaning));
   }
   entries.push(...classesOf(picture).map(({ colour, text }) => make("span", {}, swatch(colour), text)));
   for (const [name, places] of Object.entries(picture.about.marks)) {
-    if (places.length) entries.push(make("span", {}, make("span", {}, name.includes("held") ? "▽" : "▼"), name));
+    if (places.length) entries.push(make("span", {}, make("span", {}, name.includes("held") ? "▽" : "▼"), " ", name));
   }
-  element.replaceChildren(...entries);
+  element.replaceChildren(...spaced(entries));
 }
 
 function scaleEntry(label, { low, high, log }) {
@@ -61,5 +61,5 @@ function scaleEntry(label, { low, high, log }) {
     title: `${short(middle, 2)} in the middle`,
     style: { width: "8rem", background: `linear-gradient(to right, ${stops})` },
   });
-  return make("span", {}, `${label}:`, short(low, 2), bar, `${short(high, 2)}${log ? " (logarithmic)" : ""}`);
+  return make("span", {}, `${label}: `, short(low, 2), bar, ` ${short(high, 2)}${log ? " (logarithmic)" : ""}`);
 }

@@ -1,7 +1,7 @@
 // The page: it shows one view, and updates everything when the view changes.
 
 import { addressHasUnits, addressInRatios, cellsKey, changedKeys, firstView, hashOf, pictureKey, queryOf, systemKey, tidy, viewOf } from "./address.js";
-import { forgetColours, short } from "./axes.js";
+import { SCHEMES, forgetColours, short } from "./axes.js";
 import { classTable } from "./colours.js";
 import { Controls } from "./controls.js";
 import { CutPanel } from "./cut.js";
@@ -26,6 +26,9 @@ const SLOW = 1000;
 
 /** Milliseconds after which a request for a motion is cancelled by the next one. */
 const GRACE = 50;
+
+/** Words under the system at rest, until there is a motion. */
+const WAITING = "The system at rest. Its motion is shown here as soon as it is computed.";
 
 /** Milliseconds within which changes of one kind are one step of the history. */
 const TOGETHER = 1500;
@@ -101,6 +104,7 @@ class Page {
     this.map = new RegimeMap(part("stage"), scene);
     this.hint = part("motion").innerText;
     this.motion = new MotionPanel(part("motion"));
+    if (source.live) this.motion.wait(scene.drawing, WAITING);
     this.pointed = null; // the last cell under the pointer, or the example: its motion is shown while none is selected
     this.example = null; // the cell that the page opens with
     this.cut = new CutPanel(part("cut"), scene.classes, {
@@ -160,7 +164,8 @@ class Page {
     window.addEventListener("popstate", (event) => this.#onStep(event));
     part("undo").addEventListener("click", () => history.back());
     part("redo").addEventListener("click", () => history.forward());
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#redraw());
+    for (const scheme of SCHEMES) matchMedia(scheme).addEventListener("change", () => this.#redraw());
+    part("lecture").addEventListener("click", () => this.#key("l"));
     new ResizeObserver(() => this.#onSize()).observe(this.map.stage);
     setInterval(() => this.#lookAtWaiting(), PATIENCE);
     this.controls.offer("quantity", this.quantities, this.view);
@@ -171,7 +176,7 @@ class Page {
   change(change) {
     this.examples.stop();
     const ranges = ["r", "beta"].filter((axis) => change[axis]).map((axis) => [axis, tidy(change[axis])]);
-    const cells = Object.keys(change).some((key) => !["r", "beta", "quantity", "cell", "cut"].includes(key));
+    const cells = Object.keys(change).some((key) => !["r", "beta", "quantity", "cell", "cut", "lecture"].includes(key));
     this.view = { ...this.view, ...change, ...Object.fromEntries(ranges) };
     this.#note("");
     this.update(cells || "cell" in change);
@@ -180,6 +185,7 @@ class Page {
   /** Update the page for the changed view; `motion`: whether the motion in the selected cell may have changed. */
   update(motion = false) {
     const { map, view, scene } = this;
+    this.#setLecture(Boolean(view.lecture));
     map.view = view;
     map.kept = view.cell;
     this.controls.set(view);
@@ -201,6 +207,13 @@ class Page {
     }
     this.#markOutdated();
     this.settle();
+  }
+
+  /** Large type, and little else than the map and one motion, for a lecture room. */
+  #setLecture(on) {
+    if (document.documentElement.classList.toggle("lecture", on) === (part("lecture").ariaPressed === "true")) return;
+    part("lecture").ariaPressed = String(on);
+    this.#redraw();
   }
 
   /** Fade outdated parts of the page until they are replaced. */
@@ -334,7 +347,9 @@ class Page {
   }
 
   #takeAddress(address) {
+    const kept = this.view.cell;
     this.#readAddress(address);
+    if (kept && !this.view.cell) this.#release(); // its motion goes with it
     this.controls.offer("quantity", this.quantities, this.view);
     this.update(true);
   }
@@ -354,13 +369,14 @@ class Page {
 
   #redraw() {
     forgetColours();
-    this.map.draw();
+    if (this.view) this.map.draw();
     this.motion.draw();
     this.cut.draw();
   }
 
   #onPicture(found) {
     this.map.show(found);
+    if (!this.map.whole && found.lines) legend(part("legend"), found); // boundaries without cells
     if (found.whole) {
       part("system").textContent = found.about.system;
       legend(part("legend"), found);
@@ -382,18 +398,30 @@ class Page {
     if (state.error) {
       this.#wrong(state.error);
     } else if (state.held) {
-      this.#say(`a finer map would take about ${this.#duration(state.held)}`, "compute it", () => this.#finer());
+      this.#say(`Shown: ${this.#cells(this.map.whole)}. The finest map, ${this.#cells(this.size)}, would take about ${this.#duration(state.held)}.`, "Compute it", () => this.#finer());
       this.map.stage.dataset.state = "done";
     } else if (state.done !== undefined) {
       this.#say("");
       this.map.stage.dataset.state = "done";
     } else if (state.share < 1) {
       const spent = performance.now() - state.since;
-      if (spent > PATIENCE) this.#say(`${Math.round(100 * state.share)} %, about ${this.#duration((spent * (1 - state.share)) / state.share)} left`);
+      if (spent > PATIENCE) this.#say(`Map of ${this.#cells(state)}: ${Math.round(100 * state.share)} %, about ${this.#duration((spent * (1 - state.share)) / state.share)} left.`);
     }
   }
 
-  /** Show errors of the address over the map; other messages do not replace them. */
+  #cells({ columns, rows }) {
+    return `${columns} × ${rows} cells`;
+  }
+
+  /** What is shown while kernels are compiled for the map; "" if nothing of it is missing. */
+  get #until() {
+    const { map, view } = this;
+    if (map.stage.dataset.state !== "refining") return "";
+    if (!map.whole) return map.pictures.length ? " Until then the boundaries are shown without the map." : " Until then the axes are shown without the map.";
+    return pictureKey(map.whole.view) === pictureKey(view) ? "" : " Until then the map before is shown.";
+  }
+
+  /** Show errors of the address above the map; other messages do not replace them. */
   #note(text) {
     [part("notice").textContent, part("notice").hidden] = [text, !text];
   }
@@ -402,7 +430,7 @@ class Page {
   #finer() {
     this.map.stage.dataset.state = "refining";
     this.requestedAt = performance.now();
-    this.#say("computing");
+    this.#say("Computing.");
     this.refiner.more();
   }
 
@@ -424,7 +452,7 @@ class Page {
     const button = document.createElement("button");
     [button.type, button.textContent] = ["button", action];
     button.addEventListener("click", does);
-    this.message.append(button);
+    this.message.append(" ", button);
   }
 
   /** Register a pending request. */
@@ -449,11 +477,11 @@ class Page {
         this.compiled = true;
         const { left, seconds } = compiling;
         const wait = left > 1 ? `about ${this.#duration(1000 * left)} left` : `${left > 0 ? "almost finished" : "longer than expected"}, ${this.#duration(1000 * seconds)} so far`;
-        this.#say(`First use: compiling, ${wait}. This happens once per machine.`);
+        this.#say(`First use: compiling, ${wait}. This happens once per machine.${this.#until}`);
       } else if (this.compiled) {
         this.#compiled();
       } else if (this.message.hidden && performance.now() - this.requestedAt > SLOW) {
-        this.#say("computing");
+        this.#say(`Computing.${this.#until}`);
       }
     } catch {
       // the pending request will show the error
@@ -637,6 +665,10 @@ class Page {
   #key(letter) {
     if (letter === "?") {
       part("keys").showModal();
+    } else if (letter === "l") {
+      this.change({ lecture: this.view.lecture ? "" : "on" });
+    } else if (letter === "e") {
+      this.motion.player.stepToEvent();
     } else if (letter === "p") {
       if (this.motion.motion) this.motion.player.toggle();
     } else if (letter === "q") {

@@ -1,6 +1,6 @@
 // The map: pictures of cells, axes, boundaries, and the cells under the pointer or selected.
 
-import { keepTo, sharp } from "./axes.js";
+import { keepTo, sharp, sized } from "./axes.js";
 import { Plate, areaOf } from "./plate.js";
 
 export class RegimeMap {
@@ -132,13 +132,13 @@ function crosshair(pen, plate, [r, beta]) {
 export function ring(pen, plate, [r, beta], kept) {
   const [x, y] = [plate.x(r), plate.y(beta)];
   for (const [width, ink] of [[kept ? 4 : 3, "#fff"], [kept ? 2 : 1.2, kept ? "#c2185b" : "#000"]]) {
-    [pen.lineWidth, pen.strokeStyle] = [width, ink];
+    [pen.lineWidth, pen.strokeStyle] = [sized(width), ink];
     pen.beginPath();
-    pen.arc(x, y, kept ? 7 : 5, 0, 2 * Math.PI);
+    pen.arc(x, y, sized(kept ? 7 : 5), 0, 2 * Math.PI);
     if (kept) {
       for (const [across, up] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
-        pen.moveTo(x + 7 * across, y + 7 * up);
-        pen.lineTo(x + 14 * across, y + 14 * up);
+        pen.moveTo(x + sized(7) * across, y + sized(7) * up);
+        pen.lineTo(x + sized(14) * across, y + sized(14) * up);
       }
     }
     pen.stroke();

@@ -4,7 +4,8 @@ import { DRAWN, colour, massColour, short } from "./axes.js";
 import { around, draw } from "./chart.js";
 import { bandsOf, drawContacts, layOut, timeOf } from "./contacts.js";
 import { Drawing } from "./drawing.js";
-import { groupRow, keyLine, make, paragraph, tableRow } from "./dom.js";
+import { groupRow, keyLine, make, paragraph, spaced, tableRow } from "./dom.js";
+import { eventsOf } from "./events.js";
 import { Moment, sampled } from "./moment.js";
 import { row } from "./packet.js";
 import { Player } from "./player.js";
@@ -24,15 +25,16 @@ const HINT = "Point at the map, or tap it, to see other motions. Click to select
 const DECADES = 5;
 
 const TEMPLATE = `
-  <h2><i></i><span class="regime"></span><small class="where"></small></h2>
+  <h2><i></i><span class="regime"></span> <small class="where"></small></h2>
   <figure class="live">
     <svg class="drawing" role="img"></svg>
     <figcaption class="states"></figcaption>
     <div class="player">
       <button type="button" class="play"></button>
       <input type="range" class="time" min="0" step="1" aria-label="time">
+      <button type="button" class="event" aria-label="Step to the next event" title="Next event (e): the contact stops, slides on or turns">▸❙</button>
       <select class="pace" aria-label="speed"></select>
-      <span class="slowed"></span>
+      <span class="slowed" role="status"></span>
     </div>
   </figure>
   <div class="words"></div>
@@ -79,6 +81,19 @@ export class MotionPanel {
     this.panel.replaceChildren(make("p", { className: "hint" }, text));
   }
 
+  /** Show the system at rest until there is a motion. @param {object} drawing  as the server describes it */
+  wait(drawing, text) {
+    this.say(text);
+    const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+    svg.classList.add("drawing");
+    svg.setAttribute("role", "img");
+    this.panel.prepend(svg);
+    const drawn = new Drawing(svg);
+    drawn.show(atRest(drawing));
+    drawn.set(0);
+    svg.setAttribute("aria-label", svg.getAttribute("aria-label").replace("of the motion", "of the system at rest"));
+  }
+
   /**
    * @param {object} motion  as the server sends it, in the units of its system
    * @param {{colour: string}} look  of the cell's class
@@ -105,7 +120,7 @@ export class MotionPanel {
     this.#part(".others").hidden = true;
     this.#part("tbody").replaceChildren(...(none ? [] : motion.entries.flatMap((entry, k, all) => this.#entry(entry, motion.numbers[k], all[k - 1]))));
     this.moment.clear(); // its charts are of the motion before
-    this.player.load(none ? null : motion);
+    this.player.load(none ? null : motion, none ? [] : eventsOf(motion));
     this.draw();
   }
 
@@ -128,7 +143,7 @@ export class MotionPanel {
     const { contacts } = motion.drawing;
     const several = contacts.length > 1;
     const lights = contacts.map(({ name }, k) => make("span", {}, make("i", { className: "lamp" }), several ? `${k + 1} ${name}: ` : "contact: ", make("b")));
-    this.#part(".states").replaceChildren(...lights);
+    this.#part(".states").replaceChildren(...spaced(lights));
   }
 
   /** Show a moment, a place between samples, in the drawing and the charts; returns it in words. */
@@ -194,8 +209,8 @@ export class MotionPanel {
     const names = this.#drawTime();
     this.#drawLoops();
     const harmonics = this.#drawSpectrum();
-    this.#part(".names").replaceChildren(...names); // last, as it changes the layout of the page
-    this.#part(".spectrum-names").replaceChildren(...harmonics);
+    this.#part(".names").replaceChildren(...spaced(names)); // last, as it changes the layout of the page
+    this.#part(".spectrum-names").replaceChildren(...spaced(harmonics));
     this.player.show();
   }
 
@@ -242,7 +257,8 @@ export class MotionPanel {
     this.moment.line(lower, drawn, time);
     const names = [];
     for (let k = 0; k < masses; k += 1) names.push(keyLine(massColour(k), masses === 1 ? "x, mass" : `x${motion.dofs[k]}`));
-    names.push(keyLine(ink, "z, contact", masses === 1 ? "dotted" : "solid"), keyLine(colour("warm"), "friction"));
+    names.push(keyLine(ink, "z, contact", masses === 1 ? "dotted" : "solid"));
+    if (lower.checkVisibility()) names.push(keyLine(colour("warm"), "friction"));
     if (bands.length) names.push(keyLine(colour("stop"), motion.still[0], "solid", 9));
     if (other) names.push(keyLine(colour("second"), other.start === "moving" ? "from sliding" : "from rest", "dashed"));
     return names;
@@ -274,6 +290,16 @@ export class MotionPanel {
     });
     return [make("b", {}, "spectrum"), keyLine(one, "z"), keyLine(other, "friction")];
   }
+}
+
+/** A motion in which nothing moves, for a drawing. */
+function atRest(drawing) {
+  const still = (rows) => new Float32Array(2 * Math.max(1, rows));
+  const { contacts, masses } = drawing;
+  return {
+    drawing, tau: Float32Array.of(0, 2 * Math.PI), x: still(masses), z: still(1), base: still(1), load: still(drawing.loaded.length),
+    states: new Int8Array(2 * contacts.length), stretched: still(contacts.length),
+  };
 }
 
 /** A button that begins the tour. */

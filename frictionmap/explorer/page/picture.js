@@ -109,7 +109,7 @@ export class Picture {
 
   /** The boundaries that have values in the picture. */
   get boundaries() {
-    return this.about.lines.filter(({ lower, names }) => lower || names.some((name) => this.limits[name].some(Number.isFinite)));
+    return this.about.lines.filter(({ lower, names }) => lower || names.some((name) => (this.limits[name] ?? this.lines?.[name] ?? []).some(Number.isFinite)));
   }
 
   /** Quantity that colours the cells: {key, label, scale}. */

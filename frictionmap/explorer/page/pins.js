@@ -53,12 +53,14 @@ export class Pins {
     return [...this.pins].sort().map(([name, { text }]) => `${keyOf(name)}=${encodeURIComponent(text)}`);
   }
 
-  /** Take over pinned designs from an address; one that it does not have stays. @param {URLSearchParams} given */
+  /** Take over the pinned designs of an address; others go, as pins are steps that can be undone. @param {URLSearchParams} given */
   read(given) {
     for (const name of NAMES) {
       const text = given.get(keyOf(name));
-      if (text && text !== this.pins.get(name)?.text) this.put(name, text);
+      if (!text) this.pins.delete(name);
+      else if (text !== this.pins.get(name)?.text) this.put(name, text);
     }
+    this.draw();
   }
 
   /** Pin a design. @param {object | null} answer  to its goal, if it is known */
@@ -93,7 +95,7 @@ export class Pins {
     const remove = make("button", { type: "button", textContent: "×", title: `remove design ${name}`, ariaLabel: `remove design ${name}` });
     show.addEventListener("click", () => this.does.show(this.pins.get(name).text));
     remove.addEventListener("click", () => this.#remove(name));
-    return make("th", { scope: "col" }, show, remove);
+    return make("th", { scope: "col" }, show, " ", remove);
   }
 
   /** Names and values of the rows, one value per design. */

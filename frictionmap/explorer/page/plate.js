@@ -1,12 +1,10 @@
 // Cells with axes, boundaries and marks in an area of a canvas: the map of the page, or a saved one.
 
-import { colour, keepTo, ticks } from "./axes.js";
+import { colour, font, keepTo, sized, ticks } from "./axes.js";
 
 /** Room for numbers and names around the cells, in pixels of the style sheet; more where an axis has units. */
 const ROOM = { left: 64, right: 16, top: 18, bottom: 50 };
 const SECOND = { right: 44, top: 26 };
-
-const FONT = "12px system-ui, sans-serif";
 
 /** Further axes of a map in units, where they are known: {factor, name}. */
 function secondsOf({ frequency, force }) {
@@ -22,13 +20,14 @@ function namesOf(units) {
 /** Where the cells lie on a canvas, in pixels of the style sheet. @param {object} about  description of the cells */
 export function areaOf({ width, height }, about) {
   const seconds = secondsOf(about.physical);
-  const right = seconds.beta ? ROOM.right + SECOND.right : ROOM.right;
-  const top = seconds.r ? ROOM.top + SECOND.top : ROOM.top;
+  const right = sized(seconds.beta ? ROOM.right + SECOND.right : ROOM.right);
+  const top = sized(seconds.r ? ROOM.top + SECOND.top : ROOM.top);
+  const [left, bottom] = [sized(ROOM.left), sized(ROOM.bottom)];
   const ratio = window.devicePixelRatio || 1;
   const whole = (length) => Math.floor(length * ratio) / ratio; // cells are pixels: none lies across two
   return {
-    x: whole(ROOM.left), y: whole(top),
-    width: whole(Math.max(40, width - ROOM.left - right)), height: whole(Math.max(40, height - top - ROOM.bottom)),
+    x: whole(left), y: whole(top),
+    width: whole(Math.max(40, width - left - right)), height: whole(Math.max(40, height - top - bottom)),
   };
 }
 
@@ -87,8 +86,8 @@ export class Plate {
     for (const [name, dash] of curves) {
       const path = this.#path(picture, (picture.lines ?? picture.limits)[name]);
       for (const [width, ink, dashes] of [[3.6, "rgb(255 255 255 / 0.75)", []], [1.5, "#000", dash]]) {
-        [pen.lineWidth, pen.strokeStyle] = [width, ink];
-        pen.setLineDash(dashes);
+        [pen.lineWidth, pen.strokeStyle] = [sized(width), ink];
+        pen.setLineDash(dashes.map(sized));
         pen.stroke(path);
       }
     }
@@ -116,27 +115,27 @@ export class Plate {
     const { area, ranges } = this;
     const names = namesOf(this.about.units);
     const [ink, faint] = [colour("ink"), colour("faint")];
-    [pen.lineWidth, pen.strokeStyle, pen.fillStyle, pen.font] = [1, faint, ink, FONT];
+    [pen.lineWidth, pen.strokeStyle, pen.fillStyle, pen.font] = [1, faint, ink, font(12)];
     pen.strokeRect(area.x - 0.5, area.y - 0.5, area.width + 1, area.height + 1);
     const bottom = area.y + area.height;
     pen.beginPath();
     [pen.textAlign, pen.textBaseline] = ["center", "top"];
-    for (const { value, text } of ticks(ranges.r, area.width / 75)) {
+    for (const { value, text } of ticks(ranges.r, area.width / sized(75))) {
       const x = this.x(value);
       pen.moveTo(x, bottom);
       pen.lineTo(x, bottom + 5);
       pen.fillText(text, x, bottom + 8);
     }
     [pen.textAlign, pen.textBaseline] = ["right", "middle"];
-    for (const { value, text } of ticks(ranges.beta, area.height / 50)) {
+    for (const { value, text } of ticks(ranges.beta, area.height / sized(50))) {
       const y = this.y(value);
       pen.moveTo(area.x - 5, y);
       pen.lineTo(area.x, y);
       pen.fillText(text, area.x - 8, y);
     }
     pen.stroke();
-    this.#name(pen, names.r, area.x + area.width / 2, bottom + 40, 0);
-    this.#name(pen, names.beta, 15, area.y + area.height / 2, -Math.PI / 2);
+    this.#name(pen, names.r, area.x + area.width / 2, bottom + sized(40), 0);
+    this.#name(pen, names.beta, sized(15), area.y + area.height / 2, -Math.PI / 2);
     this.#drawSeconds(pen);
     this.#drawMarks(pen);
   }
@@ -148,19 +147,19 @@ export class Plate {
     if (seconds.r) {
       const { factor, name } = seconds.r;
       [pen.textAlign, pen.textBaseline] = ["center", "bottom"];
-      for (const { value, text } of ticks(ranges.r.map((r) => r * factor), area.width / 90)) {
-        pen.fillText(text, this.x(value / factor), area.y - 12);
+      for (const { value, text } of ticks(ranges.r.map((r) => r * factor), area.width / sized(90))) {
+        pen.fillText(text, this.x(value / factor), area.y - sized(12));
       }
       pen.textAlign = "right";
-      pen.fillText(name, area.x + area.width, area.y - 26);
+      pen.fillText(name, area.x + area.width, area.y - sized(26));
     }
     if (seconds.beta) {
       const { factor, name } = seconds.beta;
       [pen.textAlign, pen.textBaseline] = ["left", "middle"];
-      for (const { value, text } of ticks(ranges.beta.map((beta) => beta * factor), area.height / 50)) {
+      for (const { value, text } of ticks(ranges.beta.map((beta) => beta * factor), area.height / sized(50))) {
         pen.fillText(text, area.x + area.width + 6, this.y(value / factor));
       }
-      this.#name(pen, name, area.x + area.width + 50, area.y + area.height / 2, -Math.PI / 2);
+      this.#name(pen, name, area.x + area.width + sized(50), area.y + area.height / 2, -Math.PI / 2);
     }
   }
 
@@ -180,8 +179,8 @@ export class Plate {
       for (const place of places.filter((r) => r >= ranges.r[0] && r <= ranges.r[1])) {
         const x = this.x(place);
         pen.beginPath();
-        pen.moveTo(x - 4.5, area.y - 9);
-        pen.lineTo(x + 4.5, area.y - 9);
+        pen.moveTo(x - sized(4.5), area.y - 1 - sized(8));
+        pen.lineTo(x + sized(4.5), area.y - 1 - sized(8));
         pen.lineTo(x, area.y - 1);
         pen.closePath();
         pen.fillStyle = name.includes("held") ? colour("panel") : colour("ink");

@@ -31,6 +31,8 @@ export class Player {
     const select = panel.querySelector(".pace");
     select.replaceChildren(...PACES.map((seconds) => new Option(`${seconds} s per period`, seconds, false, seconds === this.pace)));
     this.slowed = panel.querySelector(".slowed");
+    this.event = panel.querySelector(".event");
+    this.event.addEventListener("click", () => this.stepToEvent());
     this.button.addEventListener("click", () => this.toggle());
     this.slider.addEventListener("input", () => this.seek(this.slider.value / STEPS));
     select.addEventListener("change", () => {
@@ -56,15 +58,16 @@ export class Player {
     frame.addEventListener("pointermove", (event) => frame.hasPointerCapture(event.pointerId) && seek(event));
   }
 
-  /** Show a motion, or none. */
-  load(motion) {
-    this.motion = motion;
+  /** Show a motion, or none. @param {{place: number, text: string}[]} events  of it, at places between samples, in order */
+  load(motion, events = []) {
+    [this.motion, this.events] = [motion, events];
     cancelAnimationFrame(this.#frame);
     if (!motion) return;
     this.length = Math.round(motion.tau.at(-1) / (2 * Math.PI));
     this.samples = (motion.tau.length - 1) / this.length;
     this.periods %= this.length;
     this.slider.max = Math.round(STEPS * this.length);
+    this.event.disabled = !events.length;
     this.#say();
     this.show();
     this.#run();
@@ -82,6 +85,16 @@ export class Player {
     this.periods = Math.min(periods, this.length);
     this.#say();
     this.show();
+  }
+
+  /** Stop at the next event; after the last one the first one follows. */
+  stepToEvent() {
+    if (!this.motion || !this.events.length) return;
+    const place = Math.round(this.periods * this.samples);
+    const next = this.events.findIndex((event) => event.place > place);
+    const at = Math.max(0, next);
+    this.seek(this.events[at].place / this.samples);
+    this.slowed.textContent = `event ${at + 1} of ${this.events.length}: ${this.events[at].text}`;
   }
 
   /** Show the moment again. */

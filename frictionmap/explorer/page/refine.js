@@ -134,7 +134,7 @@ export class Refiner {
       request.scale = picture.scale;
       run.seen = true;
       this.onPicture(picture);
-      this.onState({ share: picture.filled / columns, since: began });
+      this.onState({ share: picture.filled / columns, since: began, columns, rows });
       if (this.#waiting) run.control.abort();
       run.control.signal.throwIfAborted();
     }

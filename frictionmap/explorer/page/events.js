@@ -1,0 +1,28 @@
+// Events of a motion: what the contacts begin to do, in order of time.
+
+const RIGID = { stick: "stops", slide: "begins to slide", turn: "turns without a stop" };
+const ELASTIC = { stick: "holds", slide: "begins to slip", turn: "slips the other way" };
+
+/** What begins between two states of a contact; "" if nothing does. */
+function change(before, after) {
+  if (before === after) return "";
+  if (after === 0) return "stick";
+  return before === 0 ? "slide" : "turn";
+}
+
+/**
+ * Events by the first sample after them; those of one sample are one.
+ * @param {object} motion  as the server sends it
+ * @returns {{place: number, text: string}[]}
+ */
+export function eventsOf({ states, tau, drawing: { contacts } }) {
+  const found = [];
+  for (let k = 1; k < tau.length; k += 1) {
+    const words = contacts.flatMap(({ name, elastic }, c) => {
+      const kind = change(states[c * tau.length + k - 1], states[c * tau.length + k]);
+      return kind ? [`${name || "the contact"} ${(elastic ? ELASTIC : RIGID)[kind]}`] : [];
+    });
+    if (words.length) found.push({ place: k, text: words.join("; ") });
+  }
+  return found;
+}

@@ -285,7 +285,9 @@ def _takes_figure(sub: argparse.ArgumentParser) -> None:
     group.add_argument("--dpi", metavar="N", type=float, action=_Once, help=text)
     switch = argparse.BooleanOptionalAction
     group.add_argument("--legend", action=switch, help="draw the legend, or leave it out (default: draw)")
-    text = "draw the caption above the legend, or leave it out (default: draw)"
+    text = (
+        "draw the caption above the legend, or leave it out (default: draw, unless the width is below 4.5 in)"
+    )
     group.add_argument("--caption", action=switch, help=text)
     text = "title in place of the one in the file; '' for none"
     group.add_argument("--title", metavar="TEXT", action=_Once, help=text)

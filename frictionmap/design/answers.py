@@ -27,7 +27,8 @@ from .task import Task
 #: Relative changes of the friction at which the response is given beside the answer.
 _OFFSETS = np.array([-0.2, -0.02, 0.02, 0.2])
 
-#: Response curves of an answer, at these multiples of its friction; also without friction, and stuck.
+#: Response curves of an answer, at these multiples of its friction; also without friction, and stuck.  With
+#: a spread they are at its ends.
 _CURVES = np.array([0.5, 1.0, 2.0])
 
 #: Peaks of an answer that are listed: those above this share of the largest one.
@@ -120,7 +121,8 @@ def peaks_answer(
         "beta_search": points.beta, "peak_of_beta": points.size,
         "unknown_of_beta": unknown,
         "offset": _OFFSETS, "peak_at_offset": largest(curve.whole(best.beta * (1.0 + _OFFSETS))),
-        **({} if study else task.limits()), **(further or {}), **_response_curves(task, best.beta),
+        **({} if study else task.limits()), **(further or {}), **_worst(optimum),
+        **_response_curves(task, best.beta, _shown(asked)),
         **{name: value for name, value in asked.items() if name in answer_labels()},
     }  # fmt: skip
     keys = {"response": task.response.as_config(), "mu": task.mu, "beta": [task.low, task.high], **asked}
@@ -140,11 +142,24 @@ def _peaks(curve: PerformanceCurve, optimum: Optimum, of_spread: bool) -> dict[s
     return {"peak": size, "peak_r": listed.r, "peak_regime": states.regime, "peak_stops": states.stops}
 
 
-def _response_curves(task: Task, beta: float) -> dict[str, np.ndarray]:
-    """Response curves at the answer, at half and twice its friction, without friction, and stuck."""
+def _worst(optimum: Optimum) -> dict[str, np.ndarray]:
+    """The curve that was minimised with a spread."""
+    if optimum.worst is None:
+        return {}
+    return {"worst_search": optimum.worst.beta, "worst_of_beta": optimum.worst.size}
+
+
+def _shown(asked: Mapping[str, Any]) -> np.ndarray:
+    """Multiples of the answer's friction at which response curves are given."""
+    spread = asked.get("spread", 0.0)
+    return np.array([1.0 - spread, 1.0, 1.0 + spread]) if spread else _CURVES
+
+
+def _response_curves(task: Task, beta: float, multiples: np.ndarray) -> dict[str, np.ndarray]:
+    """Response curves at multiples of the friction of the answer, without friction, and stuck."""
     responses = Responses(task.system, task.response, task.mu, task.threads)
     r = peak_samples(task.system, task.band)
-    levels = np.unique(np.concatenate(([0.0] if task.may_be_without_friction else [], beta * _CURVES)))
+    levels = np.unique(np.concatenate(([0.0] if task.may_be_without_friction else [], beta * multiples)))
     sizes = responses.on_grid(r, levels).size.T
     if np.isfinite(task.stuck.beta):
         sizes = np.vstack((sizes, responses.on_grid(r, np.array([1.01 * task.stuck.beta])).size.T))
@@ -178,5 +193,17 @@ def answer_for_samples(task: Task, samples: Samples, *, widen: bool) -> xr.Datas
     curve = SampledPerformance(tasks, samples.quantile)
     optimum = find_optimum(task, curve)
     further = sample_values(tasks, curve, optimum.best.beta)
+    further |= _deciding(tasks, optimum, peak_samples(task.system, task.band))
     asked = {"quantile": samples.quantile}
     return peaks_answer("robust", task, curve, optimum, asked, further, variations.described)
+
+
+def _deciding(tasks: list[Task], optimum: Optimum, r: np.ndarray) -> dict[str, Any]:
+    """The response curve of the sample whose peak is the answer."""
+    owner = optimum.peaks.owner
+    if owner is None or optimum.best.kind == THRESHOLD:
+        return {}
+    task = tasks[int(owner[0])]
+    responses = Responses(task.system, task.response, task.mu, task.threads)
+    sizes = responses.on_grid(r, np.array([optimum.best.beta])).size[:, 0]
+    return {"deciding_sample": int(owner[0]) + 1, "response_of_sample": sizes}

@@ -26,6 +26,11 @@ _MISSED = 1e-10
 #: The curve is also computed at these multiples of the answer, for pictures and for crossings.
 _AROUND = np.linspace(0.5, 1.5, 21)
 
+#: A point that is off the line between its neighbours by more than this share of the answer is seen as a
+#: corner in a picture; intervals are halved there, in so many rounds, down to this share of the answer's
+#: friction, and between these multiples of the answer.
+_CORNER, _SMOOTHED, _FINEST, _SEEN = 0.01, 3, 0.01, (0.2, 3.0)
+
 #: Rounds in which peaks that were missed are added.
 _AGAIN = 5
 
@@ -53,6 +58,7 @@ class Optimum(NamedTuple):
     peaks: Peaks
     second: Minimum | None
     points: Points
+    worst: Points | None = None  # of the worst response within a spread
 
 
 def largest(peaks: list[Peaks]) -> np.ndarray:
@@ -217,8 +223,34 @@ def _optimum(
     """The optimum, with the curve around it."""
     around = best.beta * _AROUND
     curve.at(around[(around >= points.beta[0]) & (around <= points.beta[-1])])
-    table = curve.table
-    return Optimum(best, peaks, second, Points(np.array([one.beta for one in table]), largest(table)))
+
+    def values(beta: np.ndarray) -> np.ndarray:
+        return largest(curve.at(beta))
+
+    smooth(values, _table(curve), best)
+    return Optimum(best, peaks, second, _table(curve))
+
+
+def _table(curve: PerformanceCurve) -> Points:
+    return Points(np.array([one.beta for one in curve.table]), largest(curve.table))
+
+
+def smooth(values: Curve, points: Points, best: Minimum) -> Points:
+    """Points of a curve, with more where lines between them would be seen as corners in a picture."""
+    for _ in range(_SMOOTHED):
+        x, y = points
+        with np.errstate(invalid="ignore"):
+            chord = y[:-2] + (y[2:] - y[:-2]) * (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
+            bent = np.abs(y[1:-1] - chord) > _CORNER * best.size
+        seen = (x[1:-1] >= _SEEN[0] * best.beta) & (x[1:-1] <= _SEEN[1] * best.beta) & np.isfinite(y[:-2])
+        k = np.flatnonzero(bent & seen & (y[1:-1] <= _SEEN[1] * best.size))
+        k = np.union1d(k, k + 1)
+        k = k[x[k + 1] - x[k] > _FINEST * best.beta]
+        if not k.size:
+            break
+        middle = 0.5 * (x[k] + x[k + 1])
+        points = points.with_more(middle, values(middle))
+    return points
 
 
 def _inner_maxima(curve: PerformanceCurve, points: Points) -> tuple[np.ndarray, np.ndarray]:
@@ -247,23 +279,31 @@ def find_robust(task: Task, curve: PerformanceCurve, spread: float) -> Optimum:
         inner = (places > low[:, np.newaxis]) & (places < high[:, np.newaxis])
         return np.maximum(found, np.where(inner, sizes, 0.0).max(axis=1, initial=0.0))
 
-    beta = points.beta[
-        (points.beta * (1.0 - spread) >= task.low) & (points.beta * (1.0 + spread) <= task.high)
-    ]
+    def inside(beta: np.ndarray) -> np.ndarray:
+        return beta[(beta * (1.0 - spread) >= task.low) & (beta * (1.0 + spread) <= task.high)]
+
+    beta = inside(points.beta)
     if beta.size < 3:
         raise InputError("spread", f"must leave a range of friction to search; got {spread:g}")
     robust = Points(beta, worst(beta))
+
+    def with_worst(found: Optimum) -> Optimum:
+        best, around = found.best, inside(found.best.beta * _AROUND)
+        shown = robust.with_more(around, worst(around)) if around.size else robust
+        shown = smooth(worst, shown.with_more(np.array([best.beta]), np.array([best.size])), best)
+        return found._replace(worst=shown)
+
     threshold = _threshold(task, curve, 1.0 - spread)
     if threshold is not None:
-        return _optimum(curve, points, *threshold)
+        return with_worst(_optimum(curve, points, *threshold))
     best = min((_refined_robust(worst, robust, k) for k in local_minima(robust)), key=lambda one: one.size)
     for level, cells in curve.unknown.items():
         if best.beta * (1.0 - spread) <= level <= best.beta * (1.0 + spread):
             _refuse(level, cells, best)
     if best.kind == THRESHOLD:
-        return _optimum(curve, points, best, _at_rest(best.beta))
+        return with_worst(_optimum(curve, points, best, _at_rest(best.beta)))
     ends = curve.whole(best.beta * np.array([1.0 - spread, 1.0 + spread]), all_peaks=True)
-    return _optimum(curve, points, best, max(ends, key=lambda one: one.largest))
+    return with_worst(_optimum(curve, points, best, max(ends, key=lambda one: one.largest)))
 
 
 def _refined_robust(worst: Curve, robust: Points, k: int) -> Minimum:

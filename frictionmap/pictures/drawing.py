@@ -20,7 +20,8 @@ size : str, or (width, height) in inches
 dpi : number
     Pixels per inch, 20 to 2400.
 legend, caption : bool
-    Whether there is a legend, and a caption above it.
+    Whether there is a legend, and a caption above it; figures narrower than 4.5 inches have a caption only if
+    asked for.
 title : str
     Title in place of the one in the dataset; "" for none.
 xlim, ylim : (low, high)

@@ -28,6 +28,10 @@ _DPI = (20.0, 2400.0)
 _PANEL = 2.8
 
 
+#: Least width [inch] of a figure with a size that has a caption unless asked otherwise.
+_CAPTIONED = 4.5
+
+
 class FigureOptions(TypedDict, total=False):
     """Keyword arguments of all functions that draw."""
 
@@ -52,7 +56,7 @@ class Options:
     size: tuple[float, float | None] | None = None  # width and height [inch]
     dpi: float | None = None
     legend: bool = True
-    caption: bool = True
+    caption: bool | None = None
     title: str | None = None
     xlim: tuple[float, float] | None = None
     ylim: tuple[float, float] | None = None
@@ -61,6 +65,13 @@ class Options:
     beta: tuple[float, ...] = ()
     point: tuple[float | str, float | str] | None = None  # r and beta, or frequency and force with units
     box: tuple[float | str, float | str] | None = None
+
+    @property
+    def has_caption(self) -> bool:
+        """Whether there is a caption: as asked for, else unless a narrow figure needs the room for data."""
+        if self.caption is None:
+            return self.size is None or self.size[0] >= _CAPTIONED
+        return self.caption
 
     def columns(self, wanted: int) -> int:
         """Number of panels side by side: as many as wanted, or as the width has room for."""

@@ -64,7 +64,7 @@ NO_LOAD = {
     regimes.UNRESOLVED: CLASSES[UNRESOLVED],
     regimes.STEADY_SLIDING: Look("steady sliding", CLASSES[CONTINUOUS].colour),
     regimes.STICK_SLIP_CYCLE: Look("stick-slip cycle", CLASSES[ONE].colour),
-    regimes.CYCLE_WITHOUT_STOPS: Look("cycle without stops", "#48b2d1"),
+    regimes.CYCLE_WITHOUT_STOPS: Look("cycle without stops", "#8c9f5a"),  # no colour of a number of stops
 }
 
 #: Hatching marks several possible regimes in all pictures.

@@ -165,7 +165,7 @@ def legend_below(figure: Figure, handles: Sequence[Handle], caption: str) -> Non
     The options of the picture may leave out both, or keep the height of the figure.
     """
     options, size = current(), points(_LEGEND_SIZE, "legend.fontsize")
-    handles, caption = handles if options.legend else [], caption if options.caption else ""
+    handles, caption = handles if options.legend else [], caption if options.has_caption else ""
     if not handles and not caption:
         return
     width = figure.get_figwidth() - (0.4 if options.size is None else 0.1)

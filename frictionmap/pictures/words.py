@@ -7,14 +7,18 @@ import xarray as xr
 
 from ..files.stored import stored_excitation, stored_start
 
+#: An equals sign that no line ends beside.
+_TOGETHER = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
+
 
 def balanced(text: str, width: int) -> str:
     """Wrap text into as few lines of `width` characters as possible, all of about equal length."""
+    text = text.replace(" = ", _TOGETHER)
     lines = textwrap.wrap(text, width)
     narrow = max(1, -(-len(text) // max(1, len(lines))))
     while len(textwrap.wrap(text, narrow)) > len(lines):
         narrow += 1
-    return "\n".join(textwrap.wrap(text, narrow))
+    return "\n".join(textwrap.wrap(text, narrow)).replace(_TOGETHER, " = ")
 
 
 def system_words(ds: xr.Dataset) -> str:
@@ -43,6 +47,11 @@ def title_of_map(ds: xr.Dataset) -> str:
 def moves_base(ds: xr.Dataset) -> bool:
     """Whether the system has base excitation."""
     return stored_excitation(ds) == "base"
+
+
+def length_unit(ds: xr.Dataset) -> str:
+    """Unit of displacements in a figure: the amplitude of the base where it moves."""
+    return "$Y$" if moves_base(ds) else "$(P/k_1)$"
 
 
 #: Labels of cos(tau), by the excitation.

@@ -94,6 +94,16 @@ def test_classes_of_two_contacts_look_different(who, least):
     assert min(difference(a, b, who) for a, b in combinations(colours, 2)) > least
 
 
+@pytest.mark.parametrize(
+    ("who", "least"), [("trichromat", 12.0), ("protanope", 11.0), ("deuteranope", 12.0), ("grey", 6.0)]
+)
+def test_motions_on_a_belt_look_different_from_one_another_and_from_numbers_of_stops(who, least):
+    own = [look.colour for look in palette.NO_LOAD.values()]
+    assert min(difference(to_rgb(a), to_rgb(b), who) for a, b in combinations(own, 2)) > least
+    without_stops = palette.NO_LOAD[regimes.CYCLE_WITHOUT_STOPS].colour
+    assert without_stops not in [look.colour for look in palette.CLASSES]
+
+
 def lightness(label):
     return float(lab(linear(COLOURS[label]))[0])
 

@@ -24,6 +24,7 @@ from frictionmap.explorer.goal import describe_goals
 from frictionmap.files.json_schema import map_schema
 from frictionmap.files.reading import read, standard_form
 from frictionmap.files.summary import describe_file
+from frictionmap.pictures.palette import LINES
 from frictionmap.units.scales import scales_of
 
 CONFIGS = sorted((ROOT / "configs" / "design").glob("*.toml"))
@@ -173,6 +174,42 @@ def test_samples_by_a_configuration_and_a_call_are_the_same(tmp_path, capsys):
     assert (found.beta, found["quantile"]) == (ds.beta, 0.6)
     axes = fm.plot_design(found)
     assert_inside_and_apart(axes[0].figure)
+
+
+def test_the_curve_that_is_drawn_was_minimised_and_goes_through_the_answer():
+    """With a spread: the largest response within it, here from a sweep; of samples the one that decides."""
+    system = fm.System(damping_ratios=0.05, mass_ratios=[1, 1], stiffness_ratios=[1, 1], contact_masses=[2])
+    ds = fm.design.robust(system, [0.6, 2.0], 0.3)
+    best = ds.sel(worst_search=ds.beta).worst_of_beta
+    np.testing.assert_allclose(best, ds.peak[0], rtol=1e-12)
+    assert (ds.worst_of_beta >= best * (1.0 - 1e-9)).all()
+    worst = ds.worst_of_beta.sel(worst_search=2.0 * ds.beta, method="nearest")
+    beta = worst.worst_search.item() * np.linspace(0.7, 1.3, 13)
+    found = fm.sweep(system, np.linspace(0.6, 2.0, 1401), beta, outputs=["amplitude"]).amplitude.sel(dof=1)
+    assert worst.item() == pytest.approx(found.max().item(), rel=1e-3)
+    performance, responses = fm.plot_design(ds)
+    line = performance.lines[0].get_xydata()
+    assert np.abs(line - [ds.beta.item(), ds.peak[0].item()]).max(axis=1).min() < 1e-9
+    highest = max(np.max(line.get_ydata()) for line in responses.lines if line.get_color() != "#808080")
+    assert ds.peak[0] <= highest * (1.0 + 1e-6) <= responses.get_ylim()[1]  # not cut off
+    samples = fm.design.robust(system, [0.6, 2.0], fm.design.Samples({"sample": SAMPLES}, 0.6))
+    np.testing.assert_allclose(samples.response_of_sample.max(), samples.peak[0], rtol=1e-3)
+    own = samples.peak_of_sample.sel(sample=samples.deciding_sample)
+    np.testing.assert_allclose(own, samples.peak[0], rtol=1e-9)
+
+
+def test_the_answer_alone_is_blue_and_has_its_units(answers):
+    ds = read(answers["least-peak"])
+    axes = fm.plot_design(ds)
+    lines = [line for line in axes[1].lines if line.get_linestyle() == "-" and line.get_marker() == "None"]
+    blue = [line for line in lines if line.get_color() == LINES[0]]
+    (answer,) = blue
+    row = int(np.argmin(np.abs(ds.curve.values - ds.beta.item())))
+    np.testing.assert_array_equal(answer.get_ydata(), ds.response_of_r[row])
+    words = [text.get_text() for text in axes[0].figure.legends[0].get_texts()]
+    unit = axes[0].child_axes[0].get_xlabel().partition("[")[2][:-1]  # as on the axis
+    force = ds.friction_force.item() / {"N": 1.0, "kN": 1e3}[unit]
+    assert any(f"({force:.4g} {unit})" in text for text in words)
 
 
 @pytest.mark.parametrize("question", QUESTIONS)

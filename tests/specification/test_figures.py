@@ -216,6 +216,15 @@ def test_legend_caption_and_title(mapped):
     assert "masses" in legend.get_title().get_text()
 
 
+def test_narrow_figures_leave_the_room_of_the_caption_to_the_data(mapped):
+    def headings(**options):
+        return [one.get_title().get_text() for one in fm.plot_regimes(mapped, **options)[0].figure.legends]
+
+    assert headings(size="85mm") == [""]
+    assert "masses" in headings(size="85mm", caption=True)[0]
+    assert "masses" in headings(size="170mm")[0]
+
+
 def test_options_of_the_command_line_leave_out_legend_and_caption(draw):
     with_all = pixels(draw("map", ".png", "--size", "85mm"))
     without = pixels(draw("map", ".png", "--size", "85mm", "--no-legend", "--no-caption"))
@@ -303,6 +312,7 @@ def test_colours_of_a_quantity_are_those_of_its_scale(mapped):
     expected = image.scale.to_rgba(values, bytes=True)
     assert (colours[moves] == expected[moves]).all()
     assert ax.figure.axes[-1].get_ylabel().replace("\n", " ") == ds["contact_amplitude"].long_name
+    assert ax.figure._suptitle.get_text() == "Amplitude of the motion in the contact"  # not that of the map
 
 
 def test_one_regime_has_one_colour_in_every_picture(mapped):

@@ -30,7 +30,7 @@ def test_an_orbit_is_drawn_as_portrait_and_loop(orbit):
         np.testing.assert_array_equal(line.get_xydata(), np.column_stack((x, v)))
     (line,) = loop.lines
     np.testing.assert_array_equal(line.get_xydata(), np.column_stack((orbit.z, orbit.friction)))
-    assert words_of(axes) == ["mass 1", "mass 2", "contact"]
+    assert words_of(axes) == ["mass 1", "mass 2", "contact", "stop begins"]
     assert "stick-slip, 2 stops per cycle" in portrait.figure._suptitle.get_text()
     rendered(axes)
 
@@ -57,15 +57,54 @@ def test_the_spectrum_of_an_orbit_is_that_of_the_dataset(contact, motions):
     rendered(axes)
 
 
+def test_loops_show_their_direction_and_where_stops_begin(orbit):
+    """A stop begins at the end of sliding, with the kinetic friction of that direction."""
+    portrait, loop, *_ = fm.plot_orbit(orbit)
+    begins = orbit.event_z[orbit.event_direction == 0].values
+    (dots,) = loop.collections
+    np.testing.assert_allclose(dots.get_offsets()[:, 0], begins)
+    np.testing.assert_allclose(dots.get_offsets()[:, 1], np.copysign(0.3, begins), atol=1e-12)
+    (stops,) = portrait.collections  # of the mass in contact alone
+    np.testing.assert_allclose(stops.get_offsets(), np.column_stack((begins, 0.0 * begins)))
+    for arrow in loop.texts:  # the friction force is against the motion: + beta in the equation of z
+        (x0, y0), (x1, y1) = arrow.xyann, arrow.xy
+        assert (x1 - x0) * y0 > 0.0
+        assert y0 == pytest.approx(y1)
+    assert len(loop.texts) == 2
+    assert len(portrait.texts) == 2
+    for arrow in portrait.texts:  # clockwise: to the right where the velocity is positive
+        assert (arrow.xy[0] - arrow.xyann[0]) * arrow.xy[1] > 0.0
+
+
 @pytest.mark.parametrize("system", [fm.System(), fm.System(contact_masses=[2], **TWO)])
-def test_an_orbit_at_rest_has_a_picture(system):
-    rendered(fm.plot_orbit(fm.response(system, 0.3, 9.0)))
+def test_a_contact_at_rest_is_drawn_as_zero(system):
+    """Not as its rounding errors, which an axis would blow up."""
+    ds = fm.response(system, 0.3, 9.0)
+    row = system.contact_masses[0] - 1
+    ds["z"] = ds.z + 1e-14 * np.cos(7.0 * ds.tau)
+    ds["x"] = ds.x + 1e-14 * np.cos(5.0 * ds.tau)
+    portrait, loop, spectrum = axes = fm.plot_orbit(ds)
+    np.testing.assert_array_equal(loop.lines[0].get_xdata(), 0.0)
+    np.testing.assert_array_equal(portrait.lines[row].get_xdata(), 0.0)
+    assert not loop.texts
+    assert spectrum.texts[0].get_text() == "at rest" if ds.sizes["dof"] == 1 else spectrum.lines
+    rendered(axes)
+
+
+def test_one_unit_has_one_name_in_a_figure():
+    """With a base that moves, displacements are over its amplitude everywhere."""
+    ds = fm.response(fm.System(excitation="base", mass_ratios=[1, 1], stiffness_ratios=[1, 1]), 0.4, 0.3)
+    labels = [ax.get_xlabel() + ax.get_ylabel() for ax in (*fm.plot_orbit(ds), *fm.plot_response(ds))]
+    assert not any("P/k_1" in label for label in labels)
+    assert sum("$Y$" in label for label in labels) == 5
 
 
 def test_orbits_are_drawn_into_given_axes(orbit):
     number = len(fm.plot_orbit(orbit))
     axes = Figure().subplots(1, number)
     np.testing.assert_array_equal(fm.plot_orbit(orbit, axes), axes)
+    assert "contact" in [text.get_text() for text in axes[-1].get_legend().get_texts()]
+    assert fm.plot_orbit(orbit, Figure().subplots(1, number), legend=False)[-1].get_legend() is None
     with pytest.raises(InputError, match=rf"^ax must be {number} axes, one for each panel; got 1$"):
         fm.plot_orbit(orbit, axes[:1])
 

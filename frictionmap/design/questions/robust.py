@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...datasets.design_labels import RESPONSE, size_label
+from ...datasets.design_labels import FRICTION, RESPONSE, beta_label, size_label
 from ...datasets.labels import Label
 from ...errors import InputError
 from ...files.key import Key, number
@@ -36,10 +36,13 @@ def robust(
 ) -> "xr.Dataset":
     """Find the friction whose worst response within its relative spread, or over samples, is least.
 
-    Parameters and results are those of `least_peak`; the peaks are those at the worse end of the spread.
+    Parameters and results are those of `least_peak`; the peaks are those at the worse end of the spread,
+    `worst_of_beta` on `worst_search` is the curve that was minimised, and the response curves are those at
+    both ends of the spread.
     With `design.Samples` they are those of the sample at the quantile; `peak_of_sample` on `sample` is the
     largest response of each, `beta_no_stop` and `beta_stuck` hold for all samples, and the response curves
-    are those of the nominal structure.
+    are those of the nominal structure; `response_of_sample` is that of the sample `deciding_sample`, whose
+    peak is the answer.
     """
     if not isinstance(spread, Samples) and checked_spread(spread) == 0.0:
         raise InputError("spread", "must be > 0; got 0")
@@ -86,6 +89,14 @@ ROBUST = Question(
             (),
             least=0.0,
             most=1.0,
+        ),
+        "worst_search": beta_label(f"{FRICTION}, searched", ("worst_search",), inf=False),
+        "worst_of_beta": size_label(f"{RESPONSE}, the worst within the spread", ("worst_search",)),
+        "deciding_sample": Label(np.int64, "sample whose peak is that of the answer", (), least=1),
+        "response_of_sample": size_label(
+            "response of that sample at the answer, over P/k1 (Y), or of a force over P",
+            ("r_search",),
+            nan=True,
         ),
         "sample": Label(np.int64, "sample of the structure, counted from 1", ("sample",), least=1),
         "peak_of_sample": size_label(f"{RESPONSE}, of each sample at the answer", ("sample",)),

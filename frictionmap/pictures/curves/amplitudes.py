@@ -12,7 +12,7 @@ from ..options import current
 from ..palette import HELD, LIMIT, LineStyle
 from ..panels import Handle
 from ..second_axes import on_the_right
-from ..words import moves_base, name_of_contact
+from ..words import length_unit, name_of_contact
 from .axes import CUT, CUT_LOG, Panel, Picture, about_cut, about_peaks, in_rows, over_r, scale_of
 from .families import Family
 from .invariants import Invariant, invariant_points
@@ -225,7 +225,7 @@ def motion_picture(family: Family, quantity: str, log: bool) -> Picture:
     sizes = [motion.size for motion in shown]
     scale, ends = scale_of(family, sizes, CUT_LOG if log else CUT, log), _phase_limits(shown)
     marks = frequencies_of(family.system)
-    unit = "$Y$" if moves_base(family.cells) else "$(P/k_1)$"
+    unit = length_unit(family.cells)
 
     def amplitude(motion: MotionColumn) -> Panel:
         def draw(ax: Axes) -> list[Handle]:

@@ -19,6 +19,9 @@ HARMONIC_VARIABLES = ("displacement_harmonic", "contact_harmonic")
 #: Level [dB] below which harmonics are not shown.
 LOWEST = -120.0
 
+#: First harmonics at or below this size are rounding errors of rest.
+_ROUNDING = 1e-12
+
 #: Largest number of harmonics in a picture.
 MOST_ORDERS = 12
 
@@ -34,8 +37,9 @@ class Spectrum(NamedTuple):
 def levels_of(values: np.ndarray) -> np.ndarray:
     """Levels of harmonics in dB relative to the first, (..., harmonic, part) -> (..., harmonic)."""
     size = np.hypot(values[..., 0], values[..., 1])
+    first = np.where(size[..., 1:2] > _ROUNDING, size[..., 1:2], np.nan)  # of a motion at rest there is none
     with np.errstate(divide="ignore", invalid="ignore"):
-        return 20.0 * np.log10(size / size[..., 1:2])
+        return 20.0 * np.log10(size / first)
 
 
 def _motion_levels(family: Family) -> list[tuple[str, np.ndarray]]:

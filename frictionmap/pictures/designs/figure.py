@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from ...datasets.questions import record
 from ..drawing import with_options
 from ..options import FigureOptions, current
-from ..panels import Handle, distinct, given_axes, legend_below, new_figure, title_figure
+from ..panels import Handle, distinct, given_axes, legend_below, legend_under, new_figure, title_figure
 from ..shapes import check_holds, to_draw
 from ..words import caption
 from .limits import draw_limits
@@ -47,7 +47,8 @@ def plot_design(
     """Draw the result of a design question.
 
     Of questions about the largest response: the performance curve, largest response over friction, with the
-    answer; and response curves at the answer, at half and twice its friction, without friction, and stuck.
+    answer; and response curves at the answer, at half and twice its friction or at the ends of its spread,
+    without friction, and stuck.
     Of two forces also the least peak over the ratio of the second one.
     Of questions about boundaries: the boundaries over frequency, with the answer or the working point.
 
@@ -81,7 +82,10 @@ def plot_design(
     else:
         axes = given_axes(ax, len(draw), "for an answer")
     handles = [handle for panel, one in zip(draw, axes, strict=True) for handle in panel(one, ds)]
+    handles = distinct(handles)
     if ax is None:
         title_figure(axes[0].figure, str(ds.attrs.get("title", "")))
-        legend_below(axes[0].figure, distinct(handles), caption(ds))
+        legend_below(axes[0].figure, handles, caption(ds))
+    else:
+        legend_under(axes[-1], handles)
     return axes

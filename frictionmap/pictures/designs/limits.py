@@ -11,6 +11,7 @@ from ...datasets.questions import record
 from ..palette import LIM, LINES, STICK, LineStyle
 from ..panels import Handle
 from ..second_axes import frequency_on_top, on_the_right
+from .performance import in_units
 
 #: Friction that is shown, as a multiple of that of the answer.
 _SHOWN = 3.0
@@ -37,7 +38,8 @@ def draw_limits(ax: Axes, ds: xr.Dataset) -> list[Handle]:
         ax.axhline(beta, color=LINES[4], linewidth=0.9, linestyle=":")
         ax.plot([float(ds["at_r"])], [beta], zorder=4.0, **mark)
         name = record(str(ds["question"].values)).mark
-        handles.append(Line2D([], [], linestyle=":", label=f"{name}: β = {beta:.4g}", **mark))
+        label = f"{name}: β = {beta:.4g}{in_units(ds, beta, 'force', top)}"
+        handles.append(Line2D([], [], linestyle=":", label=label, **mark))
     for name in ("nearest_r_on_beta_lim", "nearest_r_on_beta_stick"):
         if name in ds and r[0] <= float(ds[name]) <= r[-1]:
             ax.plot([float(ds[name])], [beta], "|", color=LINES[4], markersize=12.0)

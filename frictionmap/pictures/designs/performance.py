@@ -8,19 +8,28 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from ...datasets.physical import ones_of
+from ...units.table import UNITS, handy_unit
 from ..grids import HIGH
 from ..palette import CLASSES, CONTINUOUS, LINES, STUCK
 from ..panels import Handle
 from ..second_axes import force_on_top, frequency_on_top, on_the_right
+from ..words import length_unit
 
-#: Friction and response that are shown, as multiples of those of the answer.
-_FRICTION_SHOWN, _RESPONSE_SHOWN = 3.0, 3.0
+#: Friction and response that are shown, as multiples of those of the answer; curves of the answer are shown
+#: up to `_MOST_SHOWN` times its peak.
+_FRICTION_SHOWN, _RESPONSE_SHOWN, _MOST_SHOWN = 3.0, 3.0, 4.0
+
+#: Height of the axis over the largest peak of the curves of the answer.
+_ABOVE = 1.1
 
 #: Share of the friction that is shaded around the answer, if none is given.
 _TOLERANCE = 0.2
 
-_ANSWER, _ASIDE, _LIMIT = LINES[0], LINES[3], LINES[4]
-_DASHES = {0.5: (0, (4, 1.5)), 1.0: "-", 2.0: (0, (1.5, 1.2))}
+#: Blue is the answer, and lighter where its friction may be; brown is a second vertical axis.
+_ANSWER, _ASIDE, _LIMIT, _OTHER = LINES[0], LINES[1], LINES[4], "#606060"
+_TINT = 0.18
+_DASHED, _DOTTED = (0, (4, 1.5)), (0, (1.5, 1.2))
 
 
 def _measure_of(ds: xr.Dataset) -> str:
@@ -29,31 +38,57 @@ def _measure_of(ds: xr.Dataset) -> str:
 
 
 def _unit_of(ds: xr.Dataset) -> str:
-    return "/ $P$" if _measure_of(ds) == "force" else "/ $(P/k_1)$"
+    return "/ $P$" if _measure_of(ds) == "force" else f"/ {length_unit(ds)}"
+
+
+def in_units(ds: xr.Dataset, value: float, measure: str, largest: float) -> str:
+    """A friction ratio or a response in the unit of an axis up to `largest`, in brackets; empty if the
+    dataset has no units.
+    """
+    one = ones_of(ds).get(measure)
+    if one is None or not np.isfinite(value):
+        return ""
+    unit = handy_unit(one * largest, measure)
+    return f" ({one * value / float(UNITS[unit].size):.4g} {unit.replace('um', 'µm')})"
+
+
+def _beta(ds: xr.Dataset, value: float) -> str:
+    return f"β = {value:.4g}{in_units(ds, value, 'force', _right(ds))}"
+
+
+def _right(ds: xr.Dataset) -> float:
+    """End of the axis of friction."""
+    beta, best = ds["beta_search"].values, float(ds["beta"])
+    ends = ds["interval_end"].values if "interval_end" in ds else np.empty(0)
+    wide = max([_FRICTION_SHOWN * best, *(1.2 * ends[np.isfinite(ends)])])
+    return min(float(beta[-1]), wide) if wide > 0.0 else float(beta[-1])
 
 
 def draw_performance(ax: Axes, ds: xr.Dataset) -> list[Handle]:
-    """Draw the largest response over friction, with the answer, its tolerance, and ranges of regimes."""
+    """Draw the curve that was minimised over friction, with the answer, its tolerance and the regimes."""
     beta, size = ds["beta_search"].values, ds["peak_of_beta"].values
     best, least = float(ds["beta"]), float(ds["peak"].values[0])
-    ends = ds["interval_end"].values if "interval_end" in ds else np.empty(0)
-    wide = max([_FRICTION_SHOWN * best, *(1.2 * ends[np.isfinite(ends)])])
-    right = min(float(beta[-1]), wide) if wide > 0.0 else float(beta[-1])
+    right = _right(ds)
     limit = float(ds["limit"]) if "limit" in ds else 0.0
     top = max(_RESPONSE_SHOWN * least, 1.5 * limit) or float(size[np.isfinite(size)].max()) or 1.0
     handles = _draw_ranges(ax, ds, right)
-    ax.plot(beta, np.minimum(size, HIGH * top), color="black", linewidth=1.4)
-    handles.append(Line2D([], [], color="black", linewidth=1.4, label=_curve_label(ds)))
+    worst = {"worst_search", "worst_of_beta"} <= set(ds.variables)
+    if worst:
+        own = ds["worst_of_beta"].values
+        handles += _draw_size(ax, ds["worst_search"].values, own, top, {"linewidth": 1.4}, _worst_label(ds))
+    thin: dict[str, Any] = {"linewidth": 0.9, "linestyle": _DASHED} if worst else {"linewidth": 1.4}
+    handles += _draw_size(ax, beta, size, top, thin, _curve_label(ds))
     ax.plot([best], [least], "o", color=_ANSWER, markersize=6.0, zorder=4.0)
     handles.append(Line2D([], [], color=_ANSWER, marker="o", linestyle="none", label=_answer_label(ds)))
     if "peak_of_sample" in ds:
         sizes = ds["peak_of_sample"].values
-        ax.plot(np.full(sizes.size, best), sizes, "_", color=_ANSWER, markersize=9.0, zorder=3.0)
+        ax.plot(np.full(sizes.size, best), sizes, "_", color=_OTHER, markersize=9.0, zorder=3.0)
         label = f"{sizes.size} samples at this friction"
-        handles.append(Line2D([], [], color=_ANSWER, marker="_", linestyle="none", label=label))
+        handles.append(Line2D([], [], color=_OTHER, marker="_", linestyle="none", label=label))
     if limit:
         ax.axhline(limit, color=_LIMIT, linewidth=1.1, linestyle=(0, (4, 2)))
-        handles.append(Line2D([], [], color=_LIMIT, linestyle=(0, (4, 2)), label=f"limit {limit:.4g}"))
+        words = f"limit {limit:.4g}{in_units(ds, limit, _measure_of(ds), top)}"
+        handles.append(Line2D([], [], color=_LIMIT, linestyle=(0, (4, 2)), label=words))
     ax.set_xlim(0.0, right)
     ax.set_ylim(0.0, top)
     ax.set_xlabel(r"friction ratio $\beta$")
@@ -61,6 +96,14 @@ def draw_performance(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     force_on_top(ax, ds)
     on_the_right(ax, ds, _measure_of(ds))
     return handles
+
+
+def _draw_size(
+    ax: Axes, beta: np.ndarray, size: np.ndarray, top: float, style: dict[str, Any], label: str
+) -> list[Handle]:
+    """Draw a curve of the largest response, up to about `top`."""
+    ax.plot(beta, np.minimum(size, HIGH * top), color="black", **style)
+    return [Line2D([], [], color="black", label=label, **style)]
 
 
 def draw_ridge(ax: Axes, ds: xr.Dataset) -> list[Handle]:
@@ -86,14 +129,20 @@ def draw_ridge(ax: Axes, ds: xr.Dataset) -> list[Handle]:
 def _answer_label(ds: xr.Dataset) -> str:
     best, kind = float(ds["beta"]), str(ds["kind"].values) if "kind" in ds else ""
     if kind == "threshold":
-        return f"does not move from β = {best:.4g} on"
-    return f"least: β = {best:.4g}" + (f" ({kind})" if kind else "")
+        return f"does not move from {_beta(ds, best)} on"
+    return f"least: {_beta(ds, best)}" + (f", {kind}" if kind else "")
 
 
 def _curve_label(ds: xr.Dataset) -> str:
     if "quantile" not in ds:
-        return "largest response over the band"
+        exactly = "with exactly this friction" if "worst_of_beta" in ds else "over the band"
+        return f"largest response {exactly}"
     return f"largest response over the band, {100.0 * float(ds['quantile']):g} % quantile of the samples"
+
+
+def _worst_label(ds: xr.Dataset) -> str:
+    spread = f" within ± {100.0 * float(ds['spread']):g} % of the friction" if "spread" in ds else ""
+    return f"largest response{spread}"
 
 
 def _draw_ranges(ax: Axes, ds: xr.Dataset, right: float) -> list[Handle]:
@@ -101,17 +150,17 @@ def _draw_ranges(ax: Axes, ds: xr.Dataset, right: float) -> list[Handle]:
     handles: list[Handle] = []
     best = float(ds["beta"])
 
-    def shade(low: float, high: float, colour: str, label: str, alpha: float = 0.35) -> None:
+    def shade(low: float, high: float, label: str) -> None:
         if low < right and high > low:
-            ax.axvspan(low, min(high, right), color=colour, alpha=alpha, linewidth=0.0)
-            handles.append(Patch(color=colour, alpha=alpha, linewidth=0.0, label=label))
+            ax.axvspan(low, min(high, right), color=_ANSWER, alpha=_TINT, linewidth=0.0)
+            handles.append(Patch(color=_ANSWER, alpha=_TINT, linewidth=0.0, label=label))
 
     if {"interval_begin", "interval_end"} <= set(ds):
         for low, high in zip(ds["interval_begin"].values, ds["interval_end"].values, strict=True):
-            shade(float(low), float(high), _ASIDE, "within the limit")
+            shade(float(low), float(high), "friction within the limit")
     elif "quantile" not in ds:
         spread = float(ds["spread"]) if "spread" in ds else _TOLERANCE
-        shade(best * (1.0 - spread), best * (1.0 + spread), _ASIDE, f"friction ± {100.0 * spread:g} %")
+        shade(best * (1.0 - spread), best * (1.0 + spread), f"friction ± {100.0 * spread:g} %")
     if "beta_no_stop" in ds and np.isfinite(float(ds["beta_no_stop"])):
         handles += _strip(ax, 0.0, float(ds["beta_no_stop"]), right, CONTINUOUS, "no stops in the band")
     if "beta_stuck" in ds and np.isfinite(float(ds["beta_stuck"])):
@@ -128,24 +177,44 @@ def _strip(ax: Axes, low: float, high: float, right: float, of: int, label: str)
     return [Patch(label=label, **style)]
 
 
+def _curve_style(level: float, best: float) -> dict[str, Any]:
+    """Style of a response curve by its friction: blue at the answer, black around it, else grey."""
+    if np.isinf(level) or level == 0.0:
+        return {"color": "#808080", "linewidth": 1.1, "linestyle": ":" if np.isinf(level) else "-"}
+    if abs(level - best) <= 1e-9 * best:
+        return {"color": _ANSWER, "linewidth": 1.6}
+    return {"color": "black", "linewidth": 1.1, "linestyle": _DASHED if level < best else _DOTTED}
+
+
 def draw_responses(ax: Axes, ds: xr.Dataset) -> list[Handle]:
-    """Draw response curves at the answer, at half and twice its friction, without friction, and stuck."""
+    """Draw response curves at the answer, below and above it, without friction, and stuck.
+
+    Of uncertain structures they are those of the nominal one, and that of the sample that decides.
+    """
     r, best = ds["r_search"].values, float(ds["beta"])
-    top = _RESPONSE_SHOWN * float(ds["peak"].values[0]) or 1.0
+    levels, curves = ds["curve"].values.tolist(), ds["response_of_r"].values
+    of_sample = ds["response_of_sample"].values if "response_of_sample" in ds else None
+    own = [curve for level, curve in zip(levels, curves, strict=True) if 0.0 < level < np.inf]
+    top = _top(float(ds["peak"].values[0]), [*own, *([] if of_sample is None else [of_sample])])
     handles: list[Handle] = []
-    for level, curve in zip(ds["curve"].values.tolist(), ds["response_of_r"].values, strict=True):
-        share = level / best if best > 0.0 else 0.0
-        known = next((one for one in _DASHES if abs(share - one) < 1e-9), None)
-        style: dict[str, Any] = (
-            {"color": _ANSWER, "linestyle": _DASHES[known]} if known else {"color": "#808080"}
-        )
-        label = f"β = {level:.4g}"
-        if not known:
-            style["linestyle"] = ":" if np.isinf(level) else "-"
-            label = "stuck" if np.isinf(level) else "without friction"
-        shown = np.minimum(np.where(np.isnan(curve), np.inf, curve), HIGH * top)
-        ax.plot(r, shown, linewidth=1.6 if known == 1.0 else 1.1, **style)
+
+    def draw(curve: np.ndarray, label: str, style: dict[str, Any]) -> None:
+        ax.plot(r, np.minimum(np.where(np.isnan(curve), np.inf, curve), HIGH * top), **style)
         handles.append(Line2D([], [], label=label, **style))
+
+    nominal = ", nominal" if of_sample is not None else ""
+    for level, curve in zip(levels, curves, strict=True):
+        words = "stuck" if np.isinf(level) else _beta(ds, level) if level else "without friction"
+        style = _curve_style(level, best)
+        if nominal and style["color"] == _ANSWER:
+            style["color"] = "black"
+        draw(curve, words + nominal, style)
+    if of_sample is not None:
+        draw(
+            of_sample,
+            f"{_beta(ds, best)}, sample {int(ds['deciding_sample'])}",
+            {"color": _ANSWER, "linewidth": 1.6},
+        )
     if "peak_r" in ds:
         ax.plot(ds["peak_r"].values, ds["peak"].values, "o", color=_ANSWER, markersize=4.5, clip_on=True)
     ax.set_xlim(r[0], r[-1])
@@ -155,3 +224,11 @@ def draw_responses(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     frequency_on_top(ax, ds.rename(r_search="r"))
     on_the_right(ax, ds, _measure_of(ds))
     return handles
+
+
+def _top(peak: float, curves: list[np.ndarray]) -> float:
+    """End of the axis of responses: the curves of the answer are not cut off, unless they are much higher."""
+    sizes = [curve[np.isfinite(curve)].max(initial=0.0) for curve in curves]
+    least = 1.5 * peak
+    inside = [size for size in sizes if not peak or size <= _MOST_SHOWN * peak]
+    return float(max([least, *(_ABOVE * size for size in inside)])) or 1.0

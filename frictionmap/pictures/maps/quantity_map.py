@@ -31,7 +31,7 @@ from ..panels import (  # fmt: skip
 )
 from ..shapes import panels_of, to_draw
 from ..sizes import points
-from ..words import balanced, caption, title_of_map
+from ..words import balanced, caption, name_of_contact
 from .cell_image import CellImage
 from .regime_map import draw_frame, in_view
 from .working_point import mark_point
@@ -231,7 +231,7 @@ def plot_quantity(
         raise InputError(f"unknown quantity {checks.one_line(name)} of a map{hint}; valid: {there}")
     ds, grids = in_view(ds)
     panels = current().chosen(_panels(ds, name))
-    title = title_of_map(ds)
+    title = _title(ds, name)
     axes = _new_axes(len(panels), title) if ax is None else given_axes(ax, len(panels), "one for each panel")
     scale, ends = _scale(name, panels, log)
     handles: list[Handle] = []
@@ -247,6 +247,12 @@ def plot_quantity(
         return axes
     legend_under(axes[-1], handles)
     return ax if isinstance(ax, Axes) else axes
+
+
+def _title(ds: xr.Dataset, name: str) -> str:
+    """Title: the quantity in place of that of the map, and the contact that was chosen."""
+    words = str(ds[name].attrs.get("long_name", name)).partition(", ")[0]
+    return ", ".join(filter(None, (words[:1].upper() + words[1:], name_of_contact(ds))))
 
 
 def _new_axes(panels: int, title: str) -> "AxesArray":

@@ -16,10 +16,10 @@ from ..palette import LINES
 from ..panels import Handle, legend_below, new_figure, title_figure
 from ..shapes import check_holds, to_draw
 from ..sizes import finish, points, sizes
-from ..words import caption
+from ..words import caption, length_unit
 from .history import MOST_LABELS, check_can_be_seen, title_of
 from .in_time import draw_record, single_motion, time_words, values_in_si
-from .loops import CONTACT_COLOUR, draw_loop, draw_loops
+from .loops import draw_loop, draw_loops
 from .traces import Trace, traces_of
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ def _response_stage(ds: xr.Dataset) -> tuple[np.ndarray, _Moving]:
     check_can_be_seen(ds, ("z", "x", "friction"))
     traces = traces_of(ds)
     stage, history, loop, figure = _panels(ds, traces)
-    marks = _draw_stage(stage, _some_masses(ds), traces, r"displacement / $(P/k_1)$")
+    marks = _draw_stage(stage, _some_masses(ds), traces, f"displacement / {length_unit(ds)}")
     cursor = _draw_history(history, ds, traces)
     draw_loop(loop, ds, traces)
     moving = _moving(ds["tau"].values / np.pi, _some_masses(ds), traces, marks, cursor, loop)
@@ -187,7 +187,7 @@ def _some_masses(ds: xr.Dataset) -> xr.Dataset:
 
 
 def _colour(trace: Trace) -> str:
-    return trace.colour if trace.label else CONTACT_COLOUR
+    return trace.colour
 
 
 def _draw_stage(ax: Axes, masses: xr.Dataset, traces: Sequence[Trace], words: str) -> list[Line2D]:

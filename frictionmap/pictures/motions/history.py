@@ -16,13 +16,13 @@ from ..drawing import with_options
 from ..marks import spread
 from ..options import FigureOptions, current
 from ..palette import CLASSES, LINES, OPEN_COLOUR, OPEN_HATCH, OPEN_LABEL, STUCK, Shade
-from ..panels import Handle, given_axes, halo, legend_below, new_figure, title_figure
+from ..panels import Handle, given_axes, halo, legend_below, legend_under, new_figure, title_figure
 from ..second_axes import in_brackets, on_the_right, time_on_top
 from ..shapes import check_holds, check_range, to_draw
 from ..sizes import points
-from ..words import caption, load_of, moves_base, name_of_contact
+from ..words import caption, length_unit, load_of, moves_base, name_of_contact
 from .loops import draw_loop
-from .traces import Trace, is_cosine, levels_of, load_trace, traces_of
+from .traces import ROUNDING, Trace, at_rest, is_at_rest, is_cosine, levels_of, load_trace, traces_of
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -42,9 +42,6 @@ _LOOP = "hysteresis loop"
 
 #: Labels next to lines: least distance as a share of the panel's height, and largest number.
 _GAP, MOST_LABELS = 0.09, 11
-
-#: Largest range of a motion that counts as constant.
-_ROUNDING = 1e-9
 
 _OPEN_SHADE: Shade = {"color": OPEN_COLOUR, "alpha": 0.55, "linewidth": 0.0}
 _SHADE: Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.55, "linewidth": 0.0}
@@ -89,7 +86,7 @@ def _set_limits_around(ax: Axes, values: np.ndarray) -> None:
     """
     low, high = float(values.min()), float(values.max())
     half = 0.56 * (high - low)
-    if half <= _ROUNDING * max(1.0, abs(low), abs(high)):
+    if is_at_rest(values):
         half = 0.5
     ax.set_ylim(0.5 * (low + high) - half, 0.5 * (low + high) + half)
 
@@ -102,10 +99,10 @@ def _maxima(ds: xr.Dataset, load: np.ndarray) -> np.ndarray:
     turns = ds["tau"].values / np.pi
     if is_cosine(ds):
         return np.arange(2.0 * np.ceil(turns[0] / 2.0 - 1e-9), turns[-1] + 1e-9, 2.0)
-    if np.ptp(load) <= _ROUNDING:
+    if np.ptp(load) <= ROUNDING:
         return np.empty(0)
     period = turns < turns[0] + 2.0 - 1e-9
-    first = float(turns[period][np.argmax(load[period] >= load.max() - _ROUNDING)])
+    first = float(turns[period][np.argmax(load[period] >= load.max() - ROUNDING)])
     return np.arange(first, turns[-1] + 1e-9, 2.0)
 
 
@@ -116,7 +113,7 @@ def _draw_load(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
     if tops.size:  # a line without points that is not clipped makes the layout fail
         height = np.full(tops.size, load.max())
         ax.plot(tops, height, "v", color=_LOAD_COLOUR, markersize=5.0, clip_on=False)
-    if abs(float(load.max()) - 1.0) <= _ROUNDING and abs(float(load.min()) + 1.0) <= _ROUNDING:
+    if abs(float(load.max()) - 1.0) <= ROUNDING and abs(float(load.min()) + 1.0) <= ROUNDING:
         ax.set_ylim(-1.25, 1.25)
     else:
         _set_limits_around(ax, load)
@@ -128,7 +125,7 @@ def _draw_contacts(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence
     for trace in traces:
         ax.plot(turns, trace.z, color=trace.colour)
     _set_limits_around(ax, np.concatenate([trace.z for trace in traces]))
-    ax.set_ylabel("contact\n" r"$z$ / $(P/k_1)$")
+    ax.set_ylabel(f"contact\n$z$ / {length_unit(ds)}")
     on_the_right(ax, ds, "length", "$z$")
     handles: list[Handle] = [
         Line2D([], [], color=trace.colour, label=trace.label) for trace in traces if trace.label
@@ -137,9 +134,16 @@ def _draw_contacts(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence
     for trace in traces:
         times, places = trace.stops
         if times.size:
-            colour = trace.colour if trace.label else "black"
             kinds.append("slip ends" if trace.elastic else "stop begins")
-            ax.plot(times / np.pi, places, "o", color=colour, markersize=_DOT, clip_on=False, label=kinds[-1])
+            ax.plot(
+                times / np.pi,
+                places,
+                "o",
+                color=trace.colour,
+                markersize=_DOT,
+                clip_on=False,
+                label=kinds[-1],
+            )
     if kinds:
         label = ", ".join(dict.fromkeys(kinds))
         handles.append(
@@ -167,14 +171,14 @@ def _draw_stuck(ax: Axes, turns: np.ndarray, traces: Sequence[Trace]) -> None:
 
 def _draw_masses(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
     """Draw every mass, with its number at the end of its line; of many masses some are numbered."""
-    x = ds["x"].values
+    x = np.array([at_rest(one) for one in ds["x"].values])
     numbers = ds["dof"].values
     colours = [LINES[k % len(LINES)] for k in range(len(x))]
     for place, colour in zip(x, colours, strict=True):
         ax.plot(turns, place, color=colour, linewidth=1.2)
     _set_limits_around(ax, x)
     on_the_right(ax, ds, "length", "$x$")
-    ax.set_ylabel("masses\n" r"$x$ / $(P/k_1)$")
+    ax.set_ylabel(f"masses\n$x$ / {length_unit(ds)}")
     labelled = np.unique(np.linspace(0, len(x) - 1, min(len(x), MOST_LABELS)).round().astype(int))
     _label_beside(
         ax, x[labelled, -1], [rf"$x_{{{numbers[k]}}}$" for k in labelled], [colours[k] for k in labelled]
@@ -213,7 +217,7 @@ def _draw_friction(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence
     """Draw the friction force of every contact between its kinetic and static levels."""
     places, texts, colours, seen = [], [], [], []
     for trace in traces:
-        colour = trace.colour if trace.label else "black"
+        colour = trace.colour
         ax.plot(turns, trace.friction, color=colour, linewidth=1.2)
         names, factor = _friction_levels(ds, trace)
         levels = np.array([sign * level for level in names.values() for sign in (1.0, -1.0)])
@@ -233,7 +237,7 @@ def _draw_normal(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence[T
     """Draw the normal forces that move with the structure."""
     for trace in traces:
         if trace.normal is not None:
-            ax.plot(turns, trace.normal, color=trace.colour if trace.label else "black", linewidth=1.2)
+            ax.plot(turns, trace.normal, color=trace.colour, linewidth=1.2)
     ax.set_ylim(bottom=0.0)
     on_the_right(ax, ds, "force", "normal force")
     ax.set_ylabel("normal\nforce / $P$")
@@ -466,6 +470,8 @@ def plot_response(
     if ax is None:
         title_figure(axes[0].figure, title_of(ds))
         legend_below(axes[0].figure, handles, caption(ds))
+    else:
+        legend_under(axes[-1], handles)
     return axes
 
 

@@ -12,14 +12,14 @@ from ..curves.harmonics import LOWEST, levels_of
 from ..drawing import with_options
 from ..options import FigureOptions, current
 from ..palette import LINES
-from ..panels import Handle, given_axes, grid_of_panels, legend_below
+from ..panels import Handle, given_axes, grid_of_panels, legend_below, legend_under
 from ..second_axes import length_on_top
 from ..shapes import check_holds, to_draw
 from ..sizes import points
-from ..words import caption
+from ..words import caption, length_unit
 from .history import MOST_LABELS, check_can_be_seen, is_a_mass, title_of
-from .loops import CONTACT_COLOUR, draw_loop
-from .traces import traces_of
+from .loops import draw_arrow, draw_loop, draw_stops
+from .traces import CONTACT_COLOUR, at_rest, is_at_rest, traces_of
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -34,11 +34,22 @@ def _colours(ds: xr.Dataset) -> list[str]:
 
 
 def _draw_portrait(ax: Axes, ds: xr.Dataset) -> None:
-    """Draw velocity over displacement of every mass."""
+    """Draw velocity over displacement of every mass; one at rest is a point."""
+    traces = traces_of(ds)
     for x, v, colour in zip(ds["x"].values, ds["v"].values, _colours(ds), strict=True):
+        if is_at_rest(x):
+            x, v = at_rest(x), at_rest(v)
+            ax.scatter(x[:1], v[:1], s=25.0, color=colour)
+        else:
+            draw_arrow(ax, x, v, int(np.argmax(v)), colour)
         ax.plot(x, v, color=colour, linewidth=1.2)
-    ax.set_xlabel(r"displacement $x$ / $(P/k_1)$")
-    ax.set_ylabel(r"velocity $x'$ / $(P/k_1)$")
+        for trace in traces:
+            if np.allclose(x, trace.z, rtol=0.0, atol=1e-12):
+                places = trace.stops[1]
+                draw_stops(ax, places, np.zeros_like(places), colour)
+    unit = length_unit(ds)
+    ax.set_xlabel(f"displacement $x$ / {unit}")
+    ax.set_ylabel(f"velocity $x'$ / {unit}")
     ax.set_title("phase portrait", fontsize=points(10.0, "axes.titlesize"))
     length_on_top(ax, ds, "displacement")
 
@@ -54,7 +65,7 @@ def _contact_levels(ds: xr.Dataset) -> list[tuple[np.ndarray, str]]:
     values = ds["contact_harmonic"].values
     several = values if "contact" in ds["contact_harmonic"].dims else values[np.newaxis]
     return [
-        (levels_of(one), trace.colour if trace.label else CONTACT_COLOUR)
+        (levels_of(one), trace.colour)
         for one, trace in zip(several, traces_of(ds), strict=True)
         if not is_a_mass(ds, trace)
     ]
@@ -65,13 +76,18 @@ def _draw_spectrum(ax: Axes, ds: xr.Dataset) -> None:
     motions = [*zip(levels_of(ds["displacement_harmonic"].values), _colours(ds), strict=True)]
     masses = len(motions)
     motions += _contact_levels(ds)
+    seen = False
     for k, (levels, colour) in enumerate(motions):
         n = np.flatnonzero(levels >= LOWEST)
+        seen |= bool(n.size)
         beside = n + 0.6 * (k + 0.5) / len(motions) - 0.3
         ax.vlines(beside, LOWEST, levels[n], color=colour, linewidth=1.0)
         marker = _CONTACT_MARKER if k >= masses and "contact" in ds.dims else "o"
         ax.plot(beside, levels[n], marker, color=colour, markersize=3.5)
-    ax.set_ylim(LOWEST, None)
+    ax.set_ylim(LOWEST, None if seen else 0.0)
+    if not seen:
+        ax.text(0.5, 0.5, "at rest", transform=ax.transAxes, ha="center", va="center", fontsize=points(9.0))
+        ax.set_xticks([])
     ax.set_xlabel("harmonic $n$")
     ax.set_ylabel("dB re first harmonic")
     ax.set_title("harmonics", fontsize=points(10.0, "axes.titlesize"))
@@ -82,12 +98,19 @@ def _handles(ds: xr.Dataset) -> list[Handle]:
     named = zip(ds["dof"].values[:MOST_LABELS], _colours(ds), strict=False)
     handles: list[Handle] = [Line2D([], [], color=colour, label=f"mass {k}") for k, colour in named]
     traces = traces_of(ds)
-    if not traces[0].label:
-        return [*handles, Line2D([], [], color=CONTACT_COLOUR, label="contact")]
-    return handles + [
-        Line2D([], [], color=trace.colour, label=trace.label, marker=_CONTACT_MARKER, markersize=3.5)
-        for trace in traces
-    ]
+    if traces[0].label:
+        handles += [
+            Line2D([], [], color=trace.colour, label=trace.label, marker=_CONTACT_MARKER, markersize=3.5)
+            for trace in traces
+        ]
+    else:
+        handles.append(Line2D([], [], color=CONTACT_COLOUR, label="contact"))
+    if any(trace.stops[0].size for trace in traces):
+        words = "slip ends" if all(trace.elastic for trace in traces) else "stop begins"
+        handles.append(
+            Line2D([], [], color="black", marker="o", markersize=4.5, linestyle="none", label=words)
+        )
+    return handles
 
 
 @with_options
@@ -134,4 +157,6 @@ def plot_orbit(
         panel(one, ds)
     if ax is None:
         legend_below(axes[0].figure, _handles(ds), caption(ds))
+    else:
+        legend_under(axes[-1], _handles(ds))
     return axes

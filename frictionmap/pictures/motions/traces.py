@@ -10,6 +10,12 @@ from ...files.stored import stored_contacts
 from ..palette import LINES
 from ..words import name_of_contact
 
+#: Colour of the only contact.
+CONTACT_COLOUR = "black"
+
+#: Largest range of a motion that counts as rest: it is the rounding error of exact motions, over P/k1.
+ROUNDING = 1e-9
+
 #: Variables of the events; without one of these the starts of stops are not marked.
 _EVENTS = ("event_tau", "event_direction", "event_z")
 
@@ -27,6 +33,26 @@ class Trace(NamedTuple):
     stops: tuple[np.ndarray, np.ndarray]  # phases at which stops begin, and z there
     opened: np.ndarray  # bool
     normal: np.ndarray | None  # normal force of a contact with one that moves
+    stop_friction: np.ndarray  # friction with which stops begin
+
+    @property
+    def rests(self) -> bool:
+        """Whether nothing moves in the contact."""
+        return is_at_rest(self.z)
+
+
+def is_at_rest(values: np.ndarray) -> bool:
+    """Whether a motion is constant but for rounding errors."""
+    low, high = float(values.min()), float(values.max())
+    return 0.56 * (high - low) <= ROUNDING * max(1.0, abs(low), abs(high))
+
+
+def at_rest(values: np.ndarray) -> np.ndarray:
+    """A motion without the rounding errors of rest: constant then, and zero where it is nothing else."""
+    if not is_at_rest(values):
+        return values
+    level = float(values[0])
+    return np.full_like(values, 0.0 if abs(level) <= ROUNDING else level)
 
 
 def _stops(ds: xr.Dataset, number: int) -> tuple[np.ndarray, np.ndarray]:
@@ -54,9 +80,11 @@ def _trace(ds: xr.Dataset, number: int, colour: str, label: str) -> Trace:
     normal = ds["normal_force"].values if "normal_force" in ds else None
     if normal is not None and not np.isfinite(normal).any():
         normal = None
+    stops, friction = _stops(ds, number), ds["friction"].values
+    before = np.searchsorted(ds["tau"].values, stops[0]) - 1  # of a stop at the start it is the last sample
     return Trace(
-        number, label, colour, ds["z"].values, ds["friction"].values, stuck, elastic, _stops(ds, number),
-        opened, normal,
+        number, label, colour, at_rest(ds["z"].values), friction, stuck, elastic, stops, opened, normal,
+        friction[before],
     )  # fmt: skip
 
 
@@ -64,7 +92,7 @@ def traces_of(ds: xr.Dataset) -> list[Trace]:
     """Motion of every contact of a response."""
     if "contact" not in ds.dims:
         number = int(ds["contact"]) if "contact" in ds.coords else 0
-        return [_trace(ds, number, LINES[0], "")]
+        return [_trace(ds, number, CONTACT_COLOUR, "")]
     contacts = [ds.isel(contact=k) for k in range(ds.sizes["contact"])]
     return [
         _trace(one, int(one["contact"]), LINES[k % len(LINES)], name_of_contact(one))

@@ -124,7 +124,7 @@ def _command(command: Command) -> Iterator[str]:
 def configuration() -> Iterator[str]:
     """Page of all keys, from the table that the checks use."""
     yield "# Keys of a configuration\n"
-    yield "`frictionmap init --full` writes a file with all keys, `frictionmap schema` a schema.\n"
+    yield "`frictionmap init --full` writes a file with all keys, `frictionmap setup schema` a schema.\n"
     yield "## Maps, curves, boundaries, responses"
     for section, keys in KEYS.items():
         yield from _keys(section, keys, TABLES.get(section, ""))

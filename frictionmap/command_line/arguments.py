@@ -1,6 +1,7 @@
 """Command-line arguments: every command with its options and help texts."""
 
 import argparse
+import sys
 from argparse import Action, ArgumentParser
 from argparse import Namespace as Options
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -25,6 +26,7 @@ __all__ = [
     "build_parser",
     "described",
     "help_on",
+    "listed_commands",
     "one_line",
     "parse",
     "subcommands",
@@ -88,15 +90,36 @@ getting started:
 exit status: 0 success, 2 invalid input, 130 interrupted, 1 any other error"""
 
 
+_SHORT_HELP = """\
+usage: frictionmap COMMAND ...
+
+  frictionmap init                                           write a configuration, map.toml
+  frictionmap explore map.toml                               show its map in the browser
+  frictionmap map map.toml && frictionmap plot map.nc        write the map and its picture to files
+  frictionmap design map.toml                                which friction to choose
+  frictionmap identify rig.toml                              friction from measured data
+
+frictionmap --help lists all commands, frictionmap help COMMAND explains one."""
+
+
 def one_line(message: object) -> str:
     """Join a message into one line: names and keys in it may contain line breaks."""
     return " ".join(str(message).split())
 
 
-def unknown_command(word: str, valid: Iterable[str]) -> str:
-    """Return the message for a command that does not exist."""
-    valid = list(valid)
-    return f"unknown command {word!r}{nearest(word, valid, _SIMILAR)}; valid: {', '.join(valid)}"
+def unknown_command(word: str, known: Iterable[str], listed: Iterable[str]) -> str:
+    """Return the message for a command that does not exist.
+
+    known : all names, of which the nearest one is suggested
+    listed : the names that help lists
+    """
+    valid = list(listed) or list(known)
+    return f"unknown command {word!r}{nearest(word, known, _SIMILAR)}; valid: {', '.join(valid)}"
+
+
+def _listed(commands: argparse._SubParsersAction) -> list[str]:
+    """Names of the commands that help lists."""
+    return [listed.dest for listed in commands._choices_actions]
 
 
 class _Parser(argparse.ArgumentParser):
@@ -111,11 +134,12 @@ class _Parser(argparse.ArgumentParser):
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Refuse an unknown command, naming the nearest one."""
         if isinstance(action, argparse._SubParsersAction) and value not in action.choices:
-            self.exit(2, f"{self.prog}: {unknown_command(value, action.choices)}\n")
+            self.exit(2, f"{self.prog}: {unknown_command(value, action.choices, _listed(action))}\n")
         super()._check_value(action, value)
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse; refuse unknown options, naming the nearest one of the command."""
+        self._refuse_before_command(args)
         found, unknown = self.parse_known_args(args, namespace)
         if unknown:
             sub = subcommands(self).choices[found.command]
@@ -123,6 +147,15 @@ class _Parser(argparse.ArgumentParser):
             hints = [nearest(word.partition("=")[0], valid, _SIMILAR) for word in unknown if word[:2] == "--"]
             self.error(f"unrecognized arguments: {' '.join(unknown)}{next(filter(None, hints), '')}")
         return found
+
+    def _refuse_before_command(self, args: Any) -> None:
+        """Refuse an unknown option before the command; argparse would say that a command is missing."""
+        first = next(iter(sys.argv[1:] if args is None else args), "")
+        valid = self._option_string_actions
+        if first.startswith("-") and first not in valid:
+            self.error(
+                f"unknown option {first!r}{nearest(first, valid, _SIMILAR)}; valid: {', '.join(valid)}"
+            )
 
 
 class _Once(argparse.Action):
@@ -397,14 +430,18 @@ def build_parser() -> argparse.ArgumentParser:
     _takes_workers(sub)
     _takes_files(command)
     _takes_beginnings(command)
+    _takes_setup(commands)
     return parser
 
 
 def _takes_grids(command: Callable[[str, str, str], argparse.ArgumentParser]) -> None:
     """Add the commands that compute a grid."""
     text = "Determine the regime and the stops per cycle of every cell of a grid; write NetCDF."
-    sub = command("map", "regime of every cell of a grid", text)
+    sub = command("map", "regime of every cell of a grid, or the boundaries alone", text)
     _takes_config(sub, out="OUT.nc|OUT.zarr")
+    text = "compute the regime boundaries only, as the command boundaries does; no cell is classified"
+    sub.add_argument("--boundaries-only", action="store_true", dest="boundaries_only", help=text)
+    _takes_borders(sub, "with --boundaries-only, ")
     _takes_threads(sub)
     _takes_yes(sub)
     _takes_workers(sub)
@@ -414,9 +451,13 @@ def _takes_grids(command: Callable[[str, str, str], argparse.ArgumentParser]) ->
     _takes_threads(sub)
     _takes_yes(sub)
     text = "Compute the regime boundaries over frequency, without classifying cells; write NetCDF."
-    sub = command("boundaries", "regime boundaries only", text)
+    sub = command("boundaries", "regime boundaries only, as map --boundaries-only", text)
     _takes_config(sub)
-    text = "also find the borders between numbers of stops within the ranges of [grid]"
+    _takes_borders(sub)
+
+
+def _takes_borders(sub: argparse.ArgumentParser, when: str = "") -> None:
+    text = f"{when}also find the borders between numbers of stops within the ranges of [grid]"
     sub.add_argument("--borders", action="store_true", help=text)
 
 
@@ -462,14 +503,32 @@ def _takes_beginnings(command: Callable[[str, str, str], argparse.ArgumentParser
     numbers.add_argument("--ratios", action="store_true", help="dimensionless numbers")
     sub.add_argument("--full", action="store_true", help="every key, with its meaning and its valid values")
     _takes_replacement(sub)
-    text = "Print the JSON Schema of configurations, which editors use to complete and check them."
-    sub = command("schema", "JSON schema of configurations, for editors", text)
-    sub.add_argument("--rig", action="store_true", help="schema of configurations for identify")
     sub = command("help", "help on a command", "Show the help of a command, or of the program.")
     text = "command to explain (default: all commands in short)"
     sub.add_argument("verb", metavar="COMMAND", nargs="?", help=text)
+
+
+def _takes_setup(commands: argparse._SubParsersAction) -> None:
+    """Add `setup` with what editors and shells need; each part is a command of its own as well, unlisted."""
+    text = "Set up an editor or a shell: the JSON Schema of configurations, or a completion script."
+    sub = commands.add_parser(
+        "setup", help="for editors and shells: JSON Schema, completion", description=text
+    )
+    parts = sub.add_subparsers(dest="part", required=True, metavar="schema|completion")
+    for add in (
+        lambda name, words, about: parts.add_parser(name, help=words, description=about),
+        lambda name, _, about: commands.add_parser(name, description=about),
+    ):
+        _takes_parts(add)
+
+
+def _takes_parts(command: Callable[[str, str, str], argparse.ArgumentParser]) -> None:
+    """Add the parts of `setup`."""
+    text = "Print the JSON Schema of configurations, which editors use to complete and check them."
+    sub = command("schema", "JSON Schema of configurations, for editors", text)
+    sub.add_argument("--rig", action="store_true", help="schema of configurations for identify")
     text = "Print the completion script of a shell, to be loaded when the shell starts."
-    sub = command("completion", "shell completion for bash, zsh, tcsh, fish or PowerShell", text)
+    sub = command("completion", "completion for bash, zsh, tcsh, fish or PowerShell", text)
     sub.add_argument("shell", choices=SHELLS, metavar="SHELL", help=f"one of {', '.join(SHELLS)}")
 
 
@@ -516,6 +575,12 @@ def _described(action: argparse.Action) -> Argument:
     return Argument(tuple(action.option_strings), metavar, choices, str(action.help))
 
 
+def listed_commands() -> tuple[list[str], list[str]]:
+    """Return the names of all commands, and of those that help lists."""
+    commands = subcommands(build_parser())
+    return list(commands.choices), _listed(commands)
+
+
 def help_on(verb: str | None) -> str | None:
     """Return the help of a command, or of the program; None if there is no such command."""
     parser = build_parser()
@@ -526,5 +591,11 @@ def help_on(verb: str | None) -> str | None:
 
 
 def parse(arguments: Sequence[str]) -> Options:
-    """Parse and check the arguments; help, version and errors end the program."""
+    """Parse and check the arguments; help, version and errors end the program.
+
+    Without arguments the short help is printed.
+    """
+    if not arguments:
+        print(_SHORT_HELP)
+        raise SystemExit(0)
     return build_parser().parse_args(arguments)

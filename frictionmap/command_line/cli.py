@@ -4,7 +4,6 @@ import contextlib
 import functools
 import shlex
 import sys
-import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,9 +17,9 @@ from .arguments import (
     Options,
     build_parser,
     help_on,
+    listed_commands,
     one_line,
     parse,
-    subcommands,
     unknown_command,
 )
 from .interrupts import before_exit
@@ -94,7 +93,8 @@ def _belt_map(options: Options, config: "Config", output: "Output") -> None:
     with Progress(f"map of {cells:,} cells", options.quiet) as progress, listening(progress.compiling):
         ds = sweep(config, threads=options.threads, progress=progress)
         output.fill(_finish(ds, config, options))
-    _report(options, output, *describe_belts(ds))
+    first, *others = describe_belts(ds)
+    _report(options, output, f"{first} in {progress.took}", *others)
 
 
 def _with_borders(ds: "xr.Dataset", config: "Config") -> "xr.Dataset":
@@ -127,11 +127,9 @@ def _fill_cells(
     from .progress import Progress
 
     with Progress(what, options.quiet) as progress, listening(progress.compiling):
-        began = time.perf_counter()
         ds = run(progress)
-        took = time.perf_counter() - began
         output.fill(_finish(ds, config, options), lambda size: progress.writing(output.path, size))
-    first = f"{describe_map(ds)} in {took:.2g} s"
+    first = f"{describe_map(ds)} in {progress.took}"
     _report(options, output, first, *describe_causes(ds), *describe_reduction(ds))
 
 
@@ -282,14 +280,14 @@ def _store(options: Options) -> None:
             "use -o with a name that ends in .nc"
         )
     study = study_of(config.system, config.variations, axes, config.solver, config.units)
-    store = _fill_store(options, study, config.title, f"map of {study.cells:,} cells")
+    store, took = _fill_store(options, study, config.title, f"map of {study.cells:,} cells")
     if not options.quiet:
         first, *others = describe_cells(store.path)
-        _print("\n  ".join((f"{first}; wrote {options.output}", *others)))
+        _print("\n  ".join((f"{first} in {took}; wrote {options.output}", *others)))
 
 
-def _fill_store(options: Options, contents: "Contents", title: str, what: str) -> "Store":
-    """Compute contents into a store, or its missing blocks."""
+def _fill_store(options: Options, contents: "Contents", title: str, what: str) -> tuple["Store", str]:
+    """Compute contents into a store, or its missing blocks; return the store and the time in words."""
     from .._kernels.compiler.notices import listening
     from ..stores.cuts import cut_by_cost
     from ..stores.run import fill_store
@@ -298,7 +296,8 @@ def _fill_store(options: Options, contents: "Contents", title: str, what: str) -
     find_cut = functools.partial(cut_by_cost, workers=options.workers or 0, threads=options.threads)
     with Progress(what, options.quiet) as progress, listening(progress.compiling):
         fill = _fill(options, progress)
-        return fill_store(options.output, contents, title, fill, options.overwrite, progress, find_cut)
+        store = fill_store(options.output, contents, title, fill, options.overwrite, progress, find_cut)
+        return store, progress.took
 
 
 def _fill(options: Options, progress: "Progress") -> "Fill":
@@ -385,7 +384,7 @@ def _export_page(options: Options, scene: "Scene | Motions") -> None:
             page = write_page(scene, progress)
         output.fill(lambda scratch: _put(page, scratch))
     if not options.quiet:
-        _print(f"wrote {options.output} ({len(page) / 1e6:.2g} MB)")
+        _print(f"{progress.took}; wrote {options.output} ({len(page) / 1e6:.2g} MB)")
 
 
 def _reduce(options: Options) -> None:
@@ -442,7 +441,8 @@ def _design(options: Options) -> None:
             ds = design.ask()
         ds.attrs |= {"title": design.title, "config": design.text}
         output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
-    _report(options, output, f"{design.title}: {design.question}", *describe_design(ds))
+    first = f"{design.title}: {design.question} in {progress.took}"
+    _report(options, output, first, *describe_design(ds))
 
 
 def _history(options: Options) -> None:
@@ -471,11 +471,10 @@ def _spectrum(options: Options) -> None:
         )
     else:
         spectra = spectra_of(task.asked(), task.wanted, task.text)
-        store = _fill_store(options, spectra, task.title, what.format(spectra.cells))
+        store, took = _fill_store(options, spectra, task.title, what.format(spectra.cells))
         if not options.quiet:
-            _print(
-                "\n  ".join((f"{task.title}; wrote {options.output}", *describe_motions(read(store.path))))
-            )
+            lines = describe_motions(read(store.path))
+            _print("\n  ".join((f"{task.title} in {took}; wrote {options.output}", *lines)))
 
 
 def _follow_records(options: Options, task: "Task", what: str) -> None:
@@ -492,7 +491,7 @@ def _follow_records(options: Options, task: "Task", what: str) -> None:
             ds = task.ask(threads=options.threads, progress=progress)
         ds.attrs |= {"title": task.title, "config": task.text}
         output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
-    _report(options, output, task.title, *describe_motions(ds))
+    _report(options, output, f"{task.title} in {progress.took}", *describe_motions(ds))
 
 
 def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None) -> "xr.Dataset":
@@ -647,7 +646,7 @@ def _schema(options: Options) -> None:
 def _help(options: Options) -> None:
     text = help_on(options.verb)
     if text is None:
-        raise InputError(unknown_command(options.verb, subcommands(build_parser()).choices))
+        raise InputError(unknown_command(options.verb, *listed_commands()))
     _print(text.rstrip("\n"))
 
 
@@ -662,6 +661,11 @@ def _completion(options: Options) -> None:
         "": {"--set": settings, "--at": _FURTHER_AXES, "--quantity": QUANTITIES},
     }
     _print(completion(build_parser(), options.shell, words))
+
+
+def _setup(options: Options) -> None:
+    """Print what an editor or a shell needs."""
+    {"schema": _schema, "completion": _completion}[options.part](options)
 
 
 def _print(text: str) -> None:
@@ -689,6 +693,29 @@ def _check_text(arguments: Sequence[str]) -> None:
             raise InputError(f"arguments must be text in {encoding}; got {argument!r}") from None
 
 
+def _boundaries_alone(options: Options) -> None:
+    """Turn `map --boundaries-only` into the command `boundaries`.
+
+    Raises
+    ------
+    InputError
+        Options of cells are given, or --borders without it.
+    """
+    if not options.boundaries_only:
+        if options.borders:
+            raise InputError(
+                "cannot use --borders with map: add --boundaries-only, or border_r and border_beta to "
+                "solver.outputs"
+            )
+        return
+    for name in ("threads", "workers", "scheduler", "yes"):
+        if getattr(options, name):
+            raise InputError(
+                f"cannot use --{name} with --boundaries-only: no cell is computed; omit --{name}"
+            )
+    options.command = "boundaries"
+
+
 #: Commands that need a load, and what they do.
 _UNDER_LOADS = {"curves": "compute response curves"}
 
@@ -704,6 +731,7 @@ _COMMANDS: dict[str, Callable[[Options], None]] = {
     "export": _export,
     "explore": _explore,
     "init": _init,
+    "setup": _setup,
     "schema": _schema,
     "completion": _completion,
     "help": _help,
@@ -717,11 +745,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from ..files.places import abandon
 
     options.command_line = f"frictionmap {shlex.join(given)}"
-    run = _COMMANDS.get(options.command, _compute)
     before_exit(abandon)
     try:
         _check_text(given)
-        run(options)
+        if options.command == "map":
+            _boundaries_alone(options)
+        _COMMANDS.get(options.command, _compute)(options)
     except InputError as error:
         _complain(error)
         return 2

@@ -1,4 +1,4 @@
-"""Progress of long runs on standard error: one updated line on a terminal, several lines elsewhere."""
+"""Progress of long runs on standard error: one updated line on a terminal, few lines elsewhere."""
 
 import sys
 import time
@@ -10,6 +10,9 @@ from ..steady.cost import in_bytes, in_time
 
 #: Seconds after which work counts as long, and between two looks at it.
 _LONG, _BETWEEN = 0.5, 0.1
+
+#: Seconds after which work is reported once elsewhere.
+_LONG_ELSEWHERE = 10.0
 
 _COMPILING = "first use: compiling, about 40 s, once only"
 
@@ -28,7 +31,7 @@ class Progress:
         self._began = time.monotonic()
         self._next = self._began + _LONG
         self._first: tuple[float, float] | None = None  # time and share when work was first heard of
-        self._begun = self._compiles = False
+        self._reported = self._compiles = False
         self._shown = 0  # characters that stand on the terminal
 
     def __enter__(self) -> Self:
@@ -38,8 +41,12 @@ class Progress:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._show("")
-        if error is None:
-            self.say(f"{self._what} done in {in_time(time.monotonic() - self._began)}")
+
+    @property
+    def took(self) -> str:
+        """The time since the begin, in words."""
+        seconds = time.monotonic() - self._began
+        return f"{seconds:.2g} s" if seconds < 10.0 else in_time(seconds)
 
     def say(self, text: str, always: bool = False) -> None:
         """Print a line; on a terminal only if it is to remain."""
@@ -47,15 +54,8 @@ class Progress:
             self._show("")
             print(f"frictionmap: {text}", file=sys.stderr, flush=True)
 
-    def _begin(self) -> None:
-        """Report once that work has begun, after all checks of input."""
-        if not self._begun:
-            self._begun = True
-            self.say(f"{self._what} started")
-
     def compiling(self) -> None:
         """Report once that kernels are being compiled."""
-        self._begin()
         if not self._compiles:
             self._compiles = True
             self._show(_COMPILING)
@@ -63,7 +63,6 @@ class Progress:
 
     def __call__(self, done: float, total: float) -> None:
         """Report how much of the work is done."""
-        self._begin()
         now, share = time.monotonic(), done / max(total, 1)
         if self._first is None:
             self._first = now, share
@@ -71,6 +70,9 @@ class Progress:
         if self._parts and done >= self._done + 1:
             self._done = int(done)
             self.say(f"{counted}{left}")
+        elif not self._parts and not self._reported and now >= self._began + _LONG_ELSEWHERE:
+            self._reported = True
+            self.say(f"{self._what}: {100.0 * share:.0f} % done{left}")
         if now >= self._next:
             self._next = now + _BETWEEN
             self._show(f"{f'{counted}  ' if self._parts else ''}{100.0 * share:5.1f} %{left}")

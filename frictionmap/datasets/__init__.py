@@ -13,5 +13,6 @@ provenance       the history of a dataset, and the configuration that reproduces
 variables        arrays as labelled variables, and datasets with their attributes
 schema           every variable checked against its label
 physical         hertz, newtons and metres in addition to ratios
+amounts          numbers of answers to design questions in words
 ===============  ==================================================================
 """

@@ -27,6 +27,9 @@ from .task import Task
 #: Relative changes of the friction at which the response is given beside the answer.
 _OFFSETS = np.array([-0.2, -0.02, 0.02, 0.2])
 
+#: The same of an answer for a spread, whose own response is not its peak.
+_OFFSETS_OF_SPREAD = np.array([-0.2, -0.02, 0.0, 0.02, 0.2])
+
 #: Response curves of an answer, at these multiples of its friction; also without friction, and stuck.  With
 #: a spread they are at its ends.
 _CURVES = np.array([0.5, 1.0, 2.0])
@@ -115,12 +118,13 @@ def peaks_answer(
     second = optimum.second or Minimum(np.nan, np.nan, "")
     points = optimum.points
     unknown = [curve.unknown[beta].number if beta in curve.unknown else 0 for beta in points.beta.tolist()]
+    offsets = _OFFSETS_OF_SPREAD if "spread" in asked else _OFFSETS
     found = {
         "beta": best.beta, "mu": task.mu, "kind": best.kind, **_peaks(curve, optimum, "spread" in asked),
         "second_beta": second.beta, "second_peak": second.size,
         "beta_search": points.beta, "peak_of_beta": points.size,
         "unknown_of_beta": unknown,
-        "offset": _OFFSETS, "peak_at_offset": largest(curve.whole(best.beta * (1.0 + _OFFSETS))),
+        "offset": offsets, "peak_at_offset": largest(curve.whole(best.beta * (1.0 + offsets))),
         **({} if study else task.limits()), **(further or {}), **_worst(optimum),
         **_response_curves(task, best.beta, _shown(asked)),
         **{name: value for name, value in asked.items() if name in answer_labels()},

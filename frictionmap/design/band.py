@@ -43,12 +43,21 @@ class Band(NamedTuple):
 def checked_band(band: Any, scales: Scales) -> Band:
     """Check a band: two frequencies r1 < r2 above 0, which may have units."""
     given = ratios(band, "band", KINDS["r"], scales)
+    _refuse_decreasing(band, given)
     ends = checks.axis(given, "band", least=0.0, most=checks.LARGEST_RATIO)
     if ends.size != 2:
         raise InputError("band", f"must be two frequencies; got {ends.size}")
     if ends[0] <= 0.0:
         raise InputError("band", f"must be > 0; got {ends[0]:g}")
     return Band(float(ends[0]), float(ends[1]))
+
+
+def _refuse_decreasing(band: Any, given: Any) -> None:
+    """Refuse a band that begins at its upper end, by the ends that the user wrote."""
+    ends = checks.array(given, "band")
+    if ends.shape == (2,) and ends.dtype.kind in "iuf" and ends[0] >= ends[1]:
+        first, last = (end if isinstance(end, str) else f"{end:g}" for end in band)
+        raise InputError("band", f"must be two increasing frequencies; got {first} to {last}")
 
 
 def _patterns(count: int) -> Iterator[tuple[int, ...]]:

@@ -12,6 +12,7 @@ from .. import checks
 from ..datasets.questions import record, records
 from ..errors import InputError
 from ..files.config import common_tables, design_table, further_axes, read_tree, unknown_key, within
+from ..files.key import describe_values, fits
 from ..files.variants import put_variants
 from ..units.axes import needs
 from ..units.dimensions import OF_DESIGN, wanted_axes
@@ -116,9 +117,18 @@ def _arguments(question: Question, given: Mapping[str, Any]) -> dict[str, Any]:
         if key.name not in given:
             raise InputError(key.name, f"must be given for question {question.name}; got nothing")
     names = [key.name for key in (*question.needed, *question.optional)]
+    _check_others(names, given)
     arguments = {name: given[name] for name in names if name in given}
     response = _response(arguments.pop("response", {}))
     return arguments | response
+
+
+def _check_others(used: Sequence[str], given: Mapping[str, Any]) -> None:
+    """Refuse invalid values of keys that the question does not use: they are there for another one."""
+    keys = {key.name: key for one in records() for key in (*one.needed, *one.optional)}
+    for name, value in given.items():
+        if name in keys and name not in used and not fits(value, keys[name].valid):
+            raise InputError(name, f"must be {describe_values(keys[name])}; got {checks.one_line(value)}")
 
 
 def _response(given: Any) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..datasets.amounts import DIGITS, UP, amounts_by
 from ..errors import InputError, NoSteadyState
 from .minimum import Points, changes, crossing
 from .optimum import Optimum, describe_cells, find_optimum, largest
@@ -9,8 +10,12 @@ from .performance import PerformanceCurve
 from .task import Task
 
 
-def find_ranges(task: Task, curve: PerformanceCurve, limit: float) -> tuple[Optimum, np.ndarray, np.ndarray]:
+def find_ranges(
+    task: Task, curve: PerformanceCurve, limit: float, given: object
+) -> tuple[Optimum, np.ndarray, np.ndarray]:
     """Find all ranges of beta with M(beta) <= limit: the optimum, where they begin and where they end.
+
+    given : the limit as the user wrote it
 
     A range that reaches the lower end of the search begins there; one that reaches friction that holds over
     the whole band has no end.
@@ -24,10 +29,12 @@ def find_ranges(task: Task, curve: PerformanceCurve, limit: float) -> tuple[Opti
     """
     optimum = find_optimum(task, curve)
     if limit < optimum.best.size:
+        words = amounts_by(task.scales, task.response.describe(), task.system.excitation == "base")
+        least = words.response(optimum.best.size, UP, DIGITS)
         raise InputError(
             "limit",
-            f"must be >= {optimum.best.size:.9g}, the least peak, at beta = {optimum.best.beta:.6g}; "
-            f"got {limit:g}",
+            f"must be >= {least}, the least peak, at {words.friction_and_ratio(optimum.best.beta)}; "
+            f"got {given}",
         )
     points = optimum.points
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
+from ..datasets.amounts import amounts_of
 from ..datasets.design_labels import answer_axes, answer_labels
 from ..datasets.questions import record
 from ..datasets.schema import checked_values, placed
@@ -20,10 +21,10 @@ _SHOWN = 6
 
 #: Boundaries over the band, in words.
 _OF_BAND = {
-    "beta_no_stop": "no stops in the band up to beta",
-    "beta_no_stop_some_starts": "can be without stops up to beta",
-    "beta_stuck": "sticks over the whole band from beta",
-    "beta_stuck_some_starts": "can stay stuck from beta",
+    "beta_no_stop": "no stops in the band up to",
+    "beta_no_stop_some_starts": "can be without stops up to",
+    "beta_stuck": "sticks over the whole band from",
+    "beta_stuck_some_starts": "can stay stuck from",
 }
 
 
@@ -53,15 +54,16 @@ def design_form(ds: xr.Dataset) -> xr.Dataset:
 
 
 def describe_design(ds: xr.Dataset) -> list[str]:
-    """Describe an answer as a table of two columns."""
-    return [f"{name:<{_WIDTH}} {text}".rstrip() for name, text in _rows(ds)]
+    """Describe an answer: in sentences, then as a table of two columns."""
+    sentences = [text for part in record(str(ds["question"].values)).sentences for text in part(ds)]
+    warnings = [f"warning: {words}" for words in warnings_of(ds)]
+    return [*sentences, *warnings, *(f"{name:<{_WIDTH}} {text}".rstrip() for name, text in _rows(ds))]
 
 
 def _rows(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
     for rows in record(str(ds["question"].values)).rows:
         yield from rows(ds)
-    for name, words in _OF_BAND.items():
-        if name in ds and (np.isfinite(float(ds[name])) or name == "beta_stuck"):
-            yield words, f"{float(ds[name]):.6g}"
-    for words in warnings_of(ds):
-        yield "warning", words
+    words = amounts_of(ds)
+    for name, meaning in _OF_BAND.items():
+        if name in ds and np.isfinite(float(ds[name])):
+            yield meaning, words.friction_and_ratio(float(ds[name]))

@@ -1,5 +1,6 @@
 """One key of a configuration: its meaning, default and valid values, as JSON Schema."""
 
+import math
 import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -22,9 +23,15 @@ class Key(NamedTuple):
     words: str = ""  # the valid values in words, where the schema alone is hard to read
 
 
-def number(*, least: float | None = None, most: float | None = None, above: float | None = None) -> Schema:
+def number(
+    *,
+    least: float | None = None,
+    most: float | None = None,
+    above: float | None = None,
+    below: float | None = None,
+) -> Schema:
     """Schema of a number in a range."""
-    ends = {"minimum": least, "maximum": most, "exclusiveMinimum": above}
+    ends = {"minimum": least, "maximum": most, "exclusiveMinimum": above, "exclusiveMaximum": below}
     return {"type": "number", **{name: end for name, end in ends.items() if end is not None}}
 
 
@@ -98,7 +105,47 @@ def _describe_schema(valid: Schema) -> str:
     words = {"integer": "a whole number", "number": "a number", "string": "text"}[valid["type"]]
     ends = [
         f"{sign} {valid[name]:g}"
-        for name, sign in (("exclusiveMinimum", ">"), ("minimum", ">="), ("maximum", "<="))
+        for name, sign in (
+            ("exclusiveMinimum", ">"),
+            ("minimum", ">="),
+            ("maximum", "<="),
+            ("exclusiveMaximum", "<"),
+        )
         if name in valid
     ]
     return " ".join((words, " and ".join(ends))).strip()
+
+
+def fits(value: object, valid: Schema) -> bool:
+    """Whether a value is valid by itself: what JSON Schema says of the schemas of this module."""
+    if "anyOf" in valid:
+        return any(fits(value, one) for one in valid["anyOf"])
+    if "enum" in valid:
+        return value in valid["enum"]
+    if valid["type"] in ("number", "integer"):
+        return _is_in_range(value, valid)
+    if valid["type"] == "string":
+        return isinstance(value, str) and bool(re.search(valid.get("pattern", ""), value))
+    if valid["type"] == "array":
+        least, most = valid["minItems"], valid.get("maxItems", math.inf)
+        return (
+            isinstance(value, list)
+            and least <= len(value) <= most
+            and all(fits(one, valid["items"]) for one in value)
+        )
+    keys = valid["properties"]
+    return (
+        isinstance(value, Mapping)
+        and set(valid["required"]) <= set(value)
+        and all(name in keys and fits(one, keys[name]) for name, one in value.items())
+    )
+
+
+def _is_in_range(value: object, valid: Schema) -> bool:
+    """Whether a value is a finite number, or an integer, in the range of a schema."""
+    kinds = int if valid["type"] == "integer" else (int, float)
+    if isinstance(value, bool) or not isinstance(value, kinds) or not math.isfinite(value):
+        return False
+    return valid.get("minimum", -math.inf) <= value <= valid.get("maximum", math.inf) and valid.get(
+        "exclusiveMinimum", -math.inf
+    ) < value < valid.get("exclusiveMaximum", math.inf)

@@ -163,7 +163,8 @@ _HEAD = """\
 #     frictionmap map {name}.toml && frictionmap plot {name}.nc
 #
 # Above each key: its meaning and its valid values.  A line such as #cycles = 2000 shows the default or, if
-# there is none, an example.  Editors complete and check this file with the output of `frictionmap schema`.
+# there is none, an example.  Editors complete and check this file with the output of
+# `frictionmap setup schema`.
 """
 
 _AXES = """\

@@ -1,5 +1,6 @@
 """The command `design`: what it prints and writes, its files and its pictures."""
 
+import re
 import tomllib
 
 import jsonschema
@@ -21,6 +22,7 @@ from frictionmap.design.questions.keys import BAND, MU
 from frictionmap.design.questions.record import Goal, Question
 from frictionmap.design.questions.rows import answer_rows
 from frictionmap.explorer.goal import describe_goals
+from frictionmap.files.designs import describe_design
 from frictionmap.files.json_schema import map_schema
 from frictionmap.files.reading import read, standard_form
 from frictionmap.files.summary import describe_file
@@ -228,20 +230,70 @@ def test_what_is_printed(answers, capsys, tmp_path):
     path = written(tmp_path, "at-most")
     assert main(["design", str(path), "-o", str(tmp_path / "a.nc")]) == 0
     out = capsys.readouterr().out
-    assert out.startswith(f"A damper: at-most; wrote {tmp_path / 'a.nc'}\n")
-    for words in (
-        "friction ratio beta",
-        " N)",
-        "least peak, amplitude of mass 1",
-        " mm)",
-        "with 2 % less friction",
-    ):
-        assert words in out
+    first, answer, *table = out.splitlines()
+    assert re.fullmatch(rf"A damper: at-most in \S+ s; wrote {re.escape(str(tmp_path / 'a.nc'))}", first)
+    assert re.fullmatch(
+        r"  From \S+ to \S+ N mass 1 moves at most 14 mm between 0.8 and 4 Hz \(\S+ mm at \S+ N\)\.", answer
+    )
+    assert [line for line in table if re.match(r"  with 20 % less friction +\S+ mm \(\+\S+ %\)$", line)]
+    assert not re.search(r"\binf\b|-0\.0|\d\.\d{7}", out)
     assert out.isascii()
     assert main(["info", str(tmp_path / "a.nc")]) == 0
     info = capsys.readouterr().out
     assert "A damper [design]" in info
-    assert "friction ratio beta for at most" in info
+    assert "friction for at most 14 mm" in info
+
+
+def test_answers_in_sentences(answers):
+    """The answer first, in units; bounds are rounded to the side on which they hold."""
+    said = {question: describe_design(read(answers[question])) for question in QUESTIONS}
+    spread = read(answers["robust"])
+    nominal = spread.peak_at_offset.sel(offset=0.0).item()
+    assert 0.0 < nominal < spread.peak.values[0]
+    (regime,) = fm.sweep(load_design_system(answers), [0.75], [0.4]).regime.values.ravel()
+    does = ("stays stuck", "sticks and slips", "slides without stops")[regime]
+    patterns = {
+        "least-peak": r"Set (\S+) N: mass 1 moves at most (\S+) mm between 0\.8 and 4 Hz\.",
+        "robust": r"Set (\S+) N \+- 10 %: mass 1 moves at most (\S+) mm between .* Hz \((\S+) mm at .*",
+        "no-stop": r"Up to (\S+) N there are no stops between 0\.8 and 4 Hz \(\S+ Hz decides\)\.",
+        "stuck": r"From (\S+) N everything is stuck between 0\.8 and 4 Hz \(\S+ Hz decides\)\.",
+        "margin": rf"At 1\.5 Hz and 20 N the contact {does}\.",
+    }
+    found = {question: re.fullmatch(words, said[question][0]) for question, words in patterns.items()}
+    assert all(found.values()), said
+    force = {question: read(answers[question]).friction_force.item() for question in QUESTIONS}
+    assert 0.99 * force["no-stop"] < float(found["no-stop"][1]) <= force["no-stop"]
+    assert force["stuck"] <= float(found["stuck"][1]) < 1.01 * force["stuck"]
+    peak = 1e3 * spread.peak_m.values[0]
+    assert peak <= float(found["robust"][2]) < 1.01 * peak
+    assert 5.0 * nominal <= float(found["robust"][3]) < 1.01 * 5.0 * nominal  # 1 is 5 mm
+
+
+def test_margins_above_and_below_the_working_point(answers):
+    """The boundaries in hertz and newtons, and whether they are above or below the working point."""
+    ds = read(answers["margin"])
+    lines = describe_design(ds)
+    for name, words in (("beta_lim", "motion without stops"), ("beta_stick", "permanent sticking")):
+        (line,) = (line for line in lines if line.startswith(f"{words}, in friction"))
+        side = "above" if ds[name] > ds.beta else "below"
+        newtons = f"{50.0 * ds[name].item():.5g} N"
+        assert newtons in line
+        assert f"{side} the working point ({100.0 * (ds[name] / ds.beta - 1.0).item():+.3g} %)" in line
+
+
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [
+        ("limit=-3", "design.limit must be a number > 0, or a length or force with its unit; got -3"),
+        ('limit="0,5 mm"', "design.limit must be a number > 0, .* got '0,5 mm'"),
+        ("spread=1.5", "design.spread must be a number from 0 to below 1; got 1.5"),
+        ("quantile=2", "design.quantile must be a number above 0, up to 1; got 2"),
+        ("band=['4 Hz','0.8 Hz']", "design.band must be two increasing frequencies; got 4 Hz to 0.8 Hz"),
+    ],
+)
+def test_invalid_values_are_refused_by_every_question(key, words, tmp_path):
+    with pytest.raises(fm.InputError, match=words):
+        load_design(written(tmp_path, "stuck"), [f"design.{key}"]).ask()
 
 
 def test_units_and_ratios_in_the_file(answers):

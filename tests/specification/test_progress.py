@@ -1,6 +1,5 @@
 """What is said of a long run: on a terminal, elsewhere, and before it begins."""
 
-import contextlib
 import io
 import sys
 import time
@@ -69,11 +68,10 @@ def test_on_a_terminal(monkeypatch):
         assert len(line) >= longest  # nothing of the line before stays
 
 
-def test_elsewhere_there_is_a_line_at_the_start_and_one_at_the_end(monkeypatch):
+def test_elsewhere_there_is_a_line_of_compiling_and_one_of_long_work(monkeypatch):
     assert work(monkeypatch, io.StringIO()).splitlines() == [
-        "frictionmap: a map started",
         "frictionmap: first use: compiling, about 40 s, once only",
-        "frictionmap: a map done in 35 s",
+        "frictionmap: a map: 20 % done",
     ]
 
 
@@ -82,8 +80,8 @@ def test_elsewhere_there_is_a_line_at_the_start_and_one_at_the_end(monkeypatch):
     [
         (Terminal(), ["0 of 3 maps    5.6 %", "1 of 3 maps   33.3 %  about 48 s left",
                       "2 of 3 maps   72.2 %  about 21 s left"]),
-        (io.StringIO(), ["frictionmap: a page started", "frictionmap: 1 of 3 maps  about 48 s left",
-                         "frictionmap: 2 of 3 maps  about 21 s left", "frictionmap: a page done in 60 s"]),
+        (io.StringIO(), ["frictionmap: 1 of 3 maps  about 48 s left",
+                         "frictionmap: 2 of 3 maps  about 21 s left"]),
     ],
 )  # fmt: skip
 def test_progress_of_parts_is_shown_one_by_one(monkeypatch, stream, wanted):
@@ -108,19 +106,20 @@ def test_without_standard_error(monkeypatch):
         shown(1, 2)
 
 
-def test_short_work_shows_nothing_on_a_terminal(monkeypatch):
-    monkeypatch.setattr(sys, "stderr", Terminal())
+@pytest.mark.parametrize("stream", [Terminal, io.StringIO])
+def test_short_work_shows_nothing(monkeypatch, stream):
+    monkeypatch.setattr(sys, "stderr", stream())
     with Progress("a map", quiet=False) as shown:
         shown(1, 2)
     assert sys.stderr.getvalue() == ""
 
 
-def test_work_that_fails_is_not_done(monkeypatch):
-    monkeypatch.setattr(sys, "stderr", io.StringIO())
-    with contextlib.suppress(OSError), Progress("a map", quiet=False) as shown:
-        shown(1, 2)
-        raise OSError("disk")
-    assert sys.stderr.getvalue() == "frictionmap: a map started\n"
+@pytest.mark.parametrize(("seconds", "words"), [(0.512, "0.51 s"), (9.0, "9 s"), (35.2, "35 s")])
+def test_the_time_that_a_summary_states(monkeypatch, seconds, words):
+    clock = Clock(monkeypatch)
+    with Progress("a map", quiet=True) as shown:
+        clock.now += seconds
+        assert shown.took == words
 
 
 def test_progress_counts_what_else_a_cell_could_end_in():

@@ -172,7 +172,7 @@ def test_a_store_of_maps_is_no_store_of_spectra(tmp_path, monkeypatch, capsys):
 
 
 def _is_whole(file: Path) -> bool:
-    """A chunk has its name when it is whole; the part that is being written has the suffix .partial."""
+    """A chunk has its name when it is complete; the part that is being written has the suffix .partial."""
     return file.is_file() and file.suffix != ".partial"
 
 

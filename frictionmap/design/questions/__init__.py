@@ -8,6 +8,7 @@ module       what is in it
 ===========  ==========================================================================================
 record       the record of a question
 keys         keys of the table [design] that several questions have
+sentences    answers in sentences, and numbers with units
 rows         rows of summaries that several questions have
 at_most      all friction with which a response stays within a limit over a band
 least_peak   the friction with the smallest peak response over a band of frequencies

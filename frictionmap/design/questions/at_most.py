@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import checks
+from ...datasets.amounts import DOWN, UP, Amounts, amounts_of, band_of
 from ...datasets.design_labels import beta_label, size_label
 from ...datasets.labels import Label
 from ...files.key import Key, either, number, with_unit
@@ -16,6 +17,7 @@ from ...units.scales import Units, scales_of
 from .keys import BAND, OF_PEAKS
 from .record import Goal, Question, Ranges
 from .rows import LISTED, answer_rows, change_rows, peak_rows
+from .sentences import limit_of, range_of_regimes, whole_sentence
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,12 +71,15 @@ def at_most(
     value = checked_number(limit, "limit", kind, scales, above=0.0)
     task = checked_task(system, band, (quantity, mass, contact), mu, beta, threads, units)
     curve = task.performance()
-    optimum, begins, ends = find_ranges(task, curve, value)
+    optimum, begins, ends = find_ranges(task, curve, value, limit)
     ranges = {"interval": np.arange(1, begins.size + 1), "interval_begin": begins, "interval_end": ends}
     force = scales.of("force")
     if force is not None:
         ranges |= {"interval_begin_N": begins * force, "interval_end_N": ends * force}
-    return peaks_answer("at-most", task, curve, optimum, {"limit": value}, ranges)
+    ds = peaks_answer("at-most", task, curve, optimum, {"limit": value}, ranges)
+    if isinstance(limit, str):
+        ds["limit"].attrs["given"] = limit  # the unit of the user
+    return ds
 
 
 def allowed_ranges(ds: "xr.Dataset") -> Ranges:
@@ -82,17 +87,36 @@ def allowed_ranges(ds: "xr.Dataset") -> Ranges:
     return list(zip(ds["interval_begin"].values.tolist(), ds["interval_end"].values.tolist(), strict=True))
 
 
+def _range_words(words: Amounts, begin: float, end: float) -> str:
+    """A range of friction, each end rounded into it."""
+    if np.isinf(end):
+        return f"from {words.friction(begin, UP)}"
+    if begin == 0.0:
+        return f"up to {words.friction(end, DOWN)}"
+    return f"from {words.friction_range(begin, end)}"
+
+
+def _range_sentence(ds: "xr.Dataset") -> Iterator[str]:
+    """The friction that keeps the limit, and the best one."""
+    if not {"interval_begin", "interval_end", "limit"} <= set(ds.variables):
+        return
+    words, ranges = amounts_of(ds), [one for one in allowed_ranges(ds) if one[0] <= one[1]]
+    listed = " and ".join(_range_words(words, *one) for one in ranges[:LISTED])
+    best = ""
+    if {"beta", "peak"} <= set(ds.variables):
+        best = f" ({words.response(float(ds['peak'][0]), UP)} at {words.friction(float(ds['beta']))})"
+    yield whole_sentence(f"{listed} {words.stays(limit_of(ds))}{band_of(ds)}{best}")
+
+
 def _range_rows(ds: "xr.Dataset") -> Iterator[tuple[str, str]]:
     """The ranges of friction."""
     if not {"interval_begin", "interval_end"} <= set(ds):
         return
-    begins, ends = ds["interval_begin"].values, ds["interval_end"].values
-    for k, (begin, end) in enumerate(zip(begins[:LISTED], ends[:LISTED], strict=True)):
-        words = f"{begin:.9g} to {end:.9g}" if np.isfinite(end) else f"{begin:.9g} or more"
-        if {"interval_begin_N", "interval_end_N"} <= set(ds):
-            words += f" ({ds['interval_begin_N'].values[k]:.6g} to {ds['interval_end_N'].values[k]:.6g} N)"
-        limit = f" for at most {float(ds['limit']):.6g}" if "limit" in ds else ""
-        yield (f"friction ratio beta{limit}" if k == 0 else ""), words
+    words = amounts_of(ds)
+    for k, (begin, end) in enumerate(allowed_ranges(ds)[:LISTED]):
+        limit = f" for at most {limit_of(ds)}" if "limit" in ds else ""
+        last = f"to {words.friction_and_ratio(end)}" if np.isfinite(end) else "or more"
+        yield (f"friction{limit}" if k == 0 else ""), f"{words.friction_and_ratio(begin)} {last}"
 
 
 _LIMIT = Key(
@@ -124,4 +148,5 @@ AT_MOST = Question(
     rows=(answer_rows, peak_rows, change_rows, _range_rows),
     panels=("performance", "responses"),
     goal=Goal("never above", lambda ds, _: allowed_ranges(ds)),
+    sentences=(_range_sentence, range_of_regimes),
 )

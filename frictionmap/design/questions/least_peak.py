@@ -11,6 +11,7 @@ from .at_most import allowed_ranges
 from .keys import BAND, OF_PEAKS
 from .record import Goal, Question, Ranges
 from .rows import answer_rows, change_rows, peak_rows
+from .sentences import peak_sentences, range_of_regimes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -126,4 +127,5 @@ LEAST_PEAK = Question(
     rows=(answer_rows, peak_rows, change_rows),
     panels=("performance", "responses"),
     goal=Goal("least peak of", _near_it),
+    sentences=(peak_sentences, range_of_regimes),
 )

@@ -1,11 +1,12 @@
 """How far a working point is from the boundaries of its regime."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ... import checks
+from ...datasets.amounts import DIGITS, amounts_of
 from ...datasets.design_labels import beta_label, r_label
 from ...datasets.labels import Label
 from ...files.key import Key, either, number, with_unit
@@ -16,6 +17,7 @@ from ...units.scales import Units, scales_of
 from .keys import BETA, MU
 from .record import Question
 from .rows import friction_rows
+from .sentences import whole_sentence
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,15 +84,51 @@ def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units |
     return answer("margin", system, shown, found, {"r": r, "beta": beta, "mu": mu}, units, scales)
 
 
+#: Boundaries of the regimes: variable, words, and the variables of its place in frequency.
+_BOUNDARIES = (
+    ("beta_lim", "motion without stops", "nearest_r_on_beta_lim"),
+    ("beta_stick", "permanent sticking", "nearest_r_on_beta_stick"),
+)
+
+
+def _regime_sentence(ds: "xr.Dataset") -> Iterator[str]:
+    """What the contact does at the working point, as far as the boundaries tell."""
+    if not {"beta", "at_r"} <= set(ds.variables):
+        return
+    words, beta = amounts_of(ds), float(ds["beta"])
+    can = "can " if float(ds.get("mu", 1.0)) > 1.0 else ""
+    does = ""
+    if "beta_stick" in ds and beta >= float(ds["beta_stick"]):
+        does = f"{can}stay{'' if can else 's'} stuck"
+    elif "beta_lim" in ds and beta <= float(ds["beta_lim"]):
+        does = f"{can}slide{'' if can else 's'} without stops"
+    elif "beta_lim" in ds and np.isfinite(float(ds["beta_lim"])):
+        does = "sticks and slips"
+    if does:
+        frequency = words.frequency(float(ds["at_r"]), digits=DIGITS)
+        yield whole_sentence(f"at {frequency} and {words.friction(beta, digits=DIGITS)} the contact {does}")
+
+
 def _margin_rows(ds: "xr.Dataset") -> Iterator[tuple[str, str]]:
-    """The working point, and its distances from the boundaries in friction and in frequency."""
-    yield from friction_rows(ds, "working point: beta", "working point: r")
-    for name, words in (("beta_lim", "to stops (beta_lim)"), ("beta_stick", "to sticking (beta_stick)")):
-        if f"margin_{name}" in ds and np.isfinite(float(ds[f"margin_{name}"])):
-            yield f"friction {words}", f"{100.0 * float(ds[f'margin_{name}']):+.6g} %"
-    for name, words in (("margin_r", "to stops"), ("margin_r_stick", "to sticking")):
-        if name in ds and np.isfinite(float(ds[name])):
-            yield f"frequency {words}", f"{100.0 * float(ds[name]):+.6g} %"
+    """The working point, and how far the boundaries are above or below it in friction and in frequency."""
+    yield from friction_rows(ds, "working point: friction", "working point: frequency")
+    words = amounts_of(ds)
+    for name, regime, place in _BOUNDARIES:
+        if {name, "beta"} <= set(ds.variables):
+            apart = _apart(float(ds[name]), float(ds["beta"]), words.friction_and_ratio, words.friction)
+            yield f"{regime}, in friction", apart
+        if {place, "at_r"} <= set(ds.variables):
+            apart = _apart(float(ds[place]), float(ds["at_r"]), words.frequency_and_ratio, words.frequency)
+            yield f"{regime}, in frequency", apart
+
+
+def _apart(boundary: float, point: float, place: Callable[[float], str], size: Callable[[float], str]) -> str:
+    """A boundary, and how far it is above or below the working point."""
+    if not np.isfinite(boundary):
+        return "no boundary" + (" at any friction" if np.isinf(boundary) else " within a factor of ten")
+    side = "above" if boundary >= point else "below"
+    change = f"{100.0 * (boundary / point - 1.0):+.3g} %"
+    return f"boundary at {place(boundary)}: {size(abs(boundary - point))} {side} the working point ({change})"
 
 
 _R = Key(
@@ -118,6 +156,7 @@ MARGIN = Question(
         "margin_r_stick": Label(np.float64, "nearest_r_on_beta_stick/r - 1", (), least=-1.0, nan=True),
     },
     rows=(_margin_rows,),
+    sentences=(_regime_sentence,),
     panels=("limits",),
     mark="working point",
 )

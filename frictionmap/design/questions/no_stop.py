@@ -1,12 +1,15 @@
 """The most friction without a stop anywhere in a band."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from ...datasets.amounts import DOWN, amounts_of, band_of
 from ...model.system import System
 from ...units.scales import Units
 from .keys import BAND, MU
 from .record import Goal, Question, Ranges
 from .rows import answer_rows
+from .sentences import whole_sentence
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,6 +64,16 @@ def _without_stops(ds: "xr.Dataset", _: Any) -> Ranges:
     return [(0.0, beta)] if beta > 0.0 else []
 
 
+def _sentence(ds: "xr.Dataset") -> Iterator[str]:
+    """The most friction without a stop, and the frequency that decides."""
+    beta, words = float(ds["beta"]), amounts_of(ds)
+    where = f" ({words.frequency(float(ds['at_r']))} decides)" if "at_r" in ds else ""
+    if beta == 0.0:
+        yield whole_sentence(f"with any friction there are stops{band_of(ds)}{where}")
+    else:
+        yield whole_sentence(f"up to {words.friction(beta, DOWN)} there are no stops{band_of(ds)}{where}")
+
+
 NO_STOP = Question(
     name="no-stop",
     title="Most friction without a stop",
@@ -68,6 +81,7 @@ NO_STOP = Question(
     needed=(BAND,),
     optional=(MU,),
     rows=(answer_rows,),
+    sentences=(_sentence,),
     panels=("limits",),
     mark="most friction without a stop",
     goal=Goal("no stops", _without_stops),

@@ -12,6 +12,9 @@ if TYPE_CHECKING:
 #: Rows of a summary: name and text.
 Rows = Callable[["xr.Dataset"], Iterator[tuple[str, str]]]
 
+#: Sentences of a summary.
+Sentences = Callable[["xr.Dataset"], Iterator[str]]
+
 
 #: Ranges of friction, from and to.
 Ranges = list[tuple[float, float]]
@@ -39,6 +42,7 @@ class Question(NamedTuple):
     labels: Mapping[str, Label] = {}  # of its own variables
     mark: str = ""  # what stands for the answer in a picture of boundaries
     goal: Goal | None = None  # on the page
+    sentences: tuple[Sentences, ...] = ()  # the answer in words, before the rows
 
     @property
     def of_response(self) -> bool:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...datasets.amounts import UP, amounts_of
 from ...datasets.design_labels import FRICTION, RESPONSE, beta_label, size_label
 from ...datasets.labels import Label
 from ...errors import InputError
@@ -16,6 +17,7 @@ from .keys import BAND, OF_PEAKS
 from .least_peak import least_peak
 from .record import Question
 from .rows import answer_rows, change_rows, peak_rows
+from .sentences import peak_sentences, range_of_regimes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -56,21 +58,22 @@ def _sample_rows(ds: "xr.Dataset") -> Iterator[tuple[str, str]]:
     """The largest responses of the samples."""
     if {"quantile", "peak_of_sample"} <= set(ds.variables):
         sizes = ds["peak_of_sample"].values
+        most = amounts_of(ds).response(float(sizes.max()), UP)
         share = f"{100.0 * float(ds['quantile']):g} %"
-        yield "samples", f"{sizes.size}; {share} of them stay below the peak, all below {sizes.max():.6g}"
+        yield "samples", f"{sizes.size}; {share} of them stay below the peak, all stay below {most}"
 
 
 _SPREAD = Key(
     "spread",
     "for robust: relative uncertainty of the friction, up and down",
-    number(least=0.0),
+    number(least=0.0, below=1.0),
     example="0.2",
     words="a number from 0 to below 1",
 )
 _QUANTILE = Key(
     "quantile",
     "for robust with samples in [axes]: share of samples whose response stays below the peak",
-    number(above=0.0),
+    number(above=0.0, most=1.0),
     0.95,
     words="a number above 0, up to 1",
 )
@@ -103,4 +106,5 @@ ROBUST = Question(
     },
     rows=(answer_rows, peak_rows, _sample_rows, change_rows),
     panels=("performance", "responses"),
+    sentences=(peak_sentences, range_of_regimes),
 )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ... import regimes
+from ...datasets.amounts import DIGITS, Amounts, amounts_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -16,59 +17,75 @@ LISTED = 6
 
 def answer_rows(ds: "xr.Dataset") -> Iterator[tuple[str, str]]:
     """The friction, and the frequency that decides."""
-    return friction_rows(ds, "friction ratio beta", "decided at r")
+    return friction_rows(ds, "friction", "decided at")
 
 
 def friction_rows(ds: "xr.Dataset", friction: str, frequency: str) -> Iterator[tuple[str, str]]:
     """Friction and frequency under these names."""
-    if "beta" in ds:
-        force = f" ({float(ds['friction_force']):.6g} N)" if "friction_force" in ds else ""
-        yield friction, f"{float(ds['beta']):.9g}{force}"
-    if "at_r" in ds:
-        yield frequency, f"{float(ds['at_r']):.9g}"
+    words = amounts_of(ds)
+    if "beta" in ds and np.isfinite(float(ds["beta"])):
+        yield friction, words.friction_and_ratio(float(ds["beta"]))
+    if "at_r" in ds and np.isfinite(float(ds["at_r"])):
+        yield frequency, words.frequency_and_ratio(float(ds["at_r"]))
 
 
 def peak_rows(ds: "xr.Dataset") -> Iterator[tuple[str, str]]:
-    """The largest response and its peaks."""
+    """The largest response and its peaks; a threshold has none."""
     if "peak" not in ds.coords:
         return
     response = str(ds.attrs.get("response", "response"))
-    kind = f", {ds['kind'].values}" if "kind" in ds else ""
-    length = f" ({1e3 * float(ds['peak_m'][0]):.6g} mm)" if "peak_m" in ds else ""
-    yield f"least peak, {response}", f"{float(ds['peak'][0]):.10g}{length}{kind}"
-    if "kind" in ds and str(ds["kind"].values) == "threshold":
-        yield "", "with this friction or more it does not move, at any frequency of the band"
+    kind = str(ds["kind"].values) if "kind" in ds else ""
+    if kind != "threshold":
+        size = amounts_of(ds).response(float(ds["peak"][0]), digits=DIGITS)
+        yield f"least peak, {response}", f"{size}{kind and f', {kind}'}"
     for k in range(min(ds.sizes["peak"], LISTED) if "peak_r" in ds else 0):
         yield ("peaks" if k == 0 else ""), _peak(ds, k)
 
 
 def change_rows(ds: "xr.Dataset") -> Iterator[tuple[str, str]]:
     """The response with other friction, and the second-best answer."""
-    for one, value in zip(_offsets(ds), _changes(ds), strict=True):
-        yield f"with {abs(one):.0%} {'less' if one < 0.0 else 'more'} friction".replace("%", " %"), value
+    words = amounts_of(ds)
+    for one, value in zip(_offsets(ds), _changes(ds, words), strict=True):
+        yield _other_friction(one), value
     if "second_beta" in ds and np.isfinite(float(ds["second_beta"])):
-        yield "second best: beta", f"{float(ds['second_beta']):.6g} ({float(ds['second_peak']):.6g})"
+        beta, peak = float(ds["second_beta"]), float(ds["second_peak"])
+        yield "second best", f"{words.friction_and_ratio(beta)}: {words.response(peak, digits=DIGITS)}"
+
+
+def _other_friction(change: float) -> str:
+    """A relative change of the friction."""
+    if change == 0.0:
+        return "with this friction itself"
+    return f"with {100.0 * abs(change):.0f} % {'less' if change < 0.0 else 'more'} friction"
 
 
 def _peak(ds: "xr.Dataset", k: int) -> str:
-    words = [f"{float(ds['peak'][k]):.6g}"]
+    words = amounts_of(ds)
+    parts = [words.response(float(ds["peak"][k]), digits=DIGITS)]
     if "peak_r" in ds:
-        hertz = f" ({float(ds['peak_frequency'][k]):.6g} Hz)" if "peak_frequency" in ds else ""
-        words.append(f"at r = {float(ds['peak_r'][k]):.6g}{hertz}")
+        parts.append(f"at {words.frequency(float(ds['peak_r'][k]), digits=DIGITS)}")
     if "peak_regime" in ds:
         names = {code.value: code.name for code in regimes.BELT_REGIMES}
-        words.append(names[int(ds["peak_regime"][k])].replace("stick_slip", "stick-slip").replace("_", " "))
+        parts.append(names[int(ds["peak_regime"][k])].replace("stick_slip", "stick-slip").replace("_", " "))
     if "peak_stops" in ds and float(ds["peak_stops"][k]) > 0.0:
-        words.append(f"{float(ds['peak_stops'][k]):.4g} stops per cycle")
-    return ", ".join(words)
+        parts.append(f"{float(ds['peak_stops'][k]):.4g} stops per cycle")
+    return ", ".join(parts)
 
 
 def _offsets(ds: "xr.Dataset") -> list[float]:
     return ds["offset"].values.tolist() if "peak_at_offset" in ds and "offset" in ds.coords else []
 
 
-def _changes(ds: "xr.Dataset") -> list[str]:
-    """The largest response with other friction, as a change in per cent unless the least one is 0."""
+def _changes(ds: "xr.Dataset", words: Amounts) -> list[str]:
+    """The largest response with other friction, and its change in per cent unless the least one is 0."""
     least = float(ds["peak"][0])
     values = ds["peak_at_offset"].values.tolist() if _offsets(ds) else []
-    return [f"{100.0 * (value / least - 1.0):+.2f} %" if least > 0.0 else f"{value:.6g}" for value in values]
+    return [words.response(value, digits=DIGITS) + _in_per_cent(value, least) for value in values]
+
+
+def _in_per_cent(value: float, least: float) -> str:
+    """The change from the least response; empty if that is 0 or the value is infinite."""
+    if least <= 0.0 or not np.isfinite([value, least]).all():
+        return ""
+    change = f"{100.0 * (value / least - 1.0):+.1f}"
+    return f" ({'0.0' if change in ('+0.0', '-0.0') else change} %)"

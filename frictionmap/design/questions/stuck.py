@@ -1,13 +1,16 @@
 """The least friction that holds over a band."""
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from ...datasets.amounts import UP, amounts_of, band_of
 from ...model.system import System
 from ...units.scales import Units
 from .keys import BAND, MU
 from .record import Goal, Question, Ranges
 from .rows import answer_rows
+from .sentences import whole_sentence
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,6 +64,18 @@ def _holding(ds: "xr.Dataset", _: Any) -> Ranges:
     return [(beta, math.inf)] if math.isfinite(beta) else []
 
 
+def _sentence(ds: "xr.Dataset") -> Iterator[str]:
+    """The least friction that holds, and the frequency that decides."""
+    beta, words = float(ds["beta"]), amounts_of(ds)
+    where = words.frequency(float(ds["at_r"])) if "at_r" in ds else ""
+    if math.isinf(beta):
+        at = f" at {where}" if where else ""
+        yield f"No friction holds{band_of(ds)}: the held structure resonates without damping{at}."
+    else:
+        decides = f" ({where} decides)" if where else ""
+        yield whole_sentence(f"from {words.friction(beta, UP)} everything is stuck{band_of(ds)}{decides}")
+
+
 STUCK = Question(
     name="stuck",
     title="Least friction that holds",
@@ -68,6 +83,7 @@ STUCK = Question(
     needed=(BAND,),
     optional=(MU,),
     rows=(answer_rows,),
+    sentences=(_sentence,),
     panels=("limits",),
     mark="least friction that holds",
     goal=Goal("always stuck", _holding),

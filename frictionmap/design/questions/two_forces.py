@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...datasets.amounts import amounts_of
 from ...datasets.design_labels import FRICTION, RESPONSE, beta_label, size_label
 from ...datasets.labels import Label
 from ...files.key import Key, number, several, whole
@@ -13,6 +14,7 @@ from ...units.scales import Units
 from .keys import BAND, OF_PEAKS
 from .record import Question
 from .rows import answer_rows, change_rows, peak_rows
+from .sentences import peak_sentences, range_of_regimes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,8 +83,8 @@ def _ratio_rows(ds: "xr.Dataset") -> Iterator[tuple[str, str]]:
     """The ratio of the second contact, and its force where that of beta is known."""
     if {"second", "second_ratio"} <= set(ds.variables):
         ratio = float(ds["second_ratio"])
-        force = f" ({ratio * float(ds['friction_force']):.6g} N)" if "friction_force" in ds else ""
-        yield f"ratio of contact {int(ds['second'])}", f"{ratio:.6g}{force}"
+        force = amounts_of(ds).friction_and_ratio(ratio * float(ds["beta"]))
+        yield f"friction of contact {int(ds['second'])}", f"{force}, ratio {ratio:.4g}"
 
 
 _SECOND = Key("second", "for two-forces: contact whose ratio is varied, counted from 1", whole(least=1), 2)
@@ -113,4 +115,5 @@ TWO_FORCES = Question(
     },
     rows=(answer_rows, _ratio_rows, peak_rows, change_rows),
     panels=("performance", "responses", "ridge"),
+    sentences=(peak_sentences, range_of_regimes),
 )

@@ -399,9 +399,9 @@ identify rig.toml -o rig.json
 design question.toml -o answer.txt
     -o must end in .nc; got answer.txt
 polt map.nc
-    unknown command 'polt' (did you mean plot?); valid: map, curves, boundaries, response, explore, identify, design, reduce, history, spectrum, plot, export, info, init, schema, help, completion
+    unknown command 'polt' (did you mean plot?); valid: map, curves, boundaries, response, explore, identify, design, reduce, history, spectrum, plot, export, info, init, help, setup
 help polt
-    unknown command 'polt' (did you mean plot?); valid: map, curves, boundaries, response, explore, identify, design, reduce, history, spectrum, plot, export, info, init, schema, help, completion
+    unknown command 'polt' (did you mean plot?); valid: map, curves, boundaries, response, explore, identify, design, reduce, history, spectrum, plot, export, info, init, help, setup
 map good.toml --thread 2
     unrecognized arguments: --thread 2 (did you mean --threads?) (see frictionmap --help)
 plot map.nc --no-legends
@@ -485,7 +485,7 @@ design question.toml --set design.band=[1]
 design question.toml --set design.band=[0,1]
     design.band must be > 0; got 0
 design question.toml --set design.band=[2,1]
-    design.band must be increasing; got 1.0 at index 1
+    design.band must be two increasing frequencies; got 2 to 1
 design question.toml --set 'design.band=["1 Hz","2 Hz"]'
     cannot convert design.band = ['1 Hz', '2 Hz'] to ratios: a reference value is missing; give units.natural_frequency (or units.mass with units.stiffness), such as units.natural_frequency = "4.2 Hz"
 design question.toml --set design.mu=0.9
@@ -511,7 +511,7 @@ design question.toml --set design.question=at-most
 design question.toml --set design.question=at-most --set design.limit=0
     design.limit must be > 0; got 0
 design question.toml --set design.question=at-most --set design.limit=0.01 --set system.contact=joined-base-wall --set system.excitation=base --quiet
-    design.limit must be >= 1, the least peak, at beta = ...; got 0.01
+    design.limit must be >= 1 Y, the least peak, at beta = ...; got 0.01
 design question.toml --set design.question=no-stop --set system.contact_stiffness=2.0
     [design]: cannot find friction without stops with contact_stiffness: a spring in the contact has no such limit; use question stuck
 design question.toml --set design.question=margin --set design.r=0 --set design.beta=1

@@ -704,8 +704,8 @@ def _boundaries_alone(options: Options) -> None:
     if not options.boundaries_only:
         if options.borders:
             raise InputError(
-                "cannot use --borders with the cells of a map: it belongs to boundaries; add --boundaries-only, "
-                "or border_r and border_beta to solver.outputs"
+                "cannot use --borders with the cells of a map: it belongs to boundaries; "
+                "add --boundaries-only, or border_r and border_beta to solver.outputs"
             )
         return
     for name in ("threads", "workers", "scheduler", "yes"):

@@ -1,4 +1,4 @@
-"""The page in a lecture room, on paper, in forced colours and for ears: what is shown, and what words it has."""
+"""The page in a lecture room, on paper, in forced colours and for ears: what it shows and its words."""
 
 import re
 
@@ -62,7 +62,8 @@ GROUND = """() => {
   return data[0];
 }"""
 OVERLAP = """() => {
-  const [one, other] = ['#message', '#cells'].map((name) => document.querySelector(name).getBoundingClientRect());
+  const [one, other] = ['#message', '#cells'].map(
+    (name) => document.querySelector(name).getBoundingClientRect());
   return one.height > 0 && one.top < other.bottom && one.bottom > other.top;
 }"""
 

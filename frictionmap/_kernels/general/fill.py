@@ -232,7 +232,12 @@ def _store_stuck(problem, out, m, i, b):
 
 @kernel
 def _stays(problem, grid, m, i, b, friction, workspace, place):
-    """Whether no contact slips from the start on, in a cell that sticks permanently; see `_place_stuck`."""
+    """Whether no contact slips from the start on, in a cell that sticks permanently.
+
+    Parameters
+    ----------
+    problem, grid, m, i, b, friction, workspace, place : see `_place_stuck`
+    """
     needs = workspace.needs
     changes = fit_row(problem, i, friction, workspace)
     # where a normal load varies, what is kept depends on the friction

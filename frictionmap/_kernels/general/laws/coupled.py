@@ -87,7 +87,7 @@ def displace_by_others(problem, motion, j, first):
 
 @kernel
 def _fill_free(problem, friction, motion, x, box):
-    """Fill what is known of the rates at x of the present step: those of limits, and without forces."""
+    """Fill the rates at x of the present step that are the same in all patterns."""
     contacts, series = motion.sense.size, motion.series
     flexibility = problem.coupling.flexibility
     for j in range(contacts):

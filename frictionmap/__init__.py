@@ -23,6 +23,7 @@ theory         closed forms over frequency: beta_lim, beta_stick, continuous mot
 single         one rigid contact under one harmonic load: cells, maps, curves, motions
 general        several contacts, springs in contacts, belts, periodic loads: boundaries, maps, motions
 phases         systems with linear phases: normal forces that move, separation, gaps, bilinear springs
+banks          systems whose contacts are banks of elastic elements, each bank one contact
 no_load        motions on belts without a load: steady sliding, its stability, and cycles
 solvers        the engines behind one interface, and which of them answers for a system
 steady         steady states: cells, maps, response curves, time histories; time and memory of a map

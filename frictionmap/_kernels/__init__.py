@@ -20,6 +20,7 @@ general            any number of contacts, springs in contacts, belts, periodic 
 history            motions in time under records
 no_load            motions on a belt without a load: all cycles of one mass; rides of structures
 phases             normal forces that move, separation, piecewise linear springs
+banks              banks of elastic elements, each bank one contact
 engine             solver of cells: recurrence, periodic orbits, outputs, stability, coexistence
 =================  =====================================================================================
 """

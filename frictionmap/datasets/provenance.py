@@ -228,7 +228,7 @@ def _contact_keys(contact: "Contact", dofs: "Dofs") -> dict[str, object]:
     """A contact as an entry of system.contacts, without defaults; its masses by their numbers."""
     given: tuple = contact.masses  # type: ignore[assignment]
     masses = [dofs.number(one, "masses") for one in given]
-    own = {key: getattr(contact, key) for key in ("ratio", "force", "mu", "stiffness", *WALLS)}
+    own = {key: getattr(contact, key) for key in ("ratio", "force", "mu", "stiffness", "bank", *WALLS)}
     own = {"name": contact.label if masses != list(given) else contact.name, **own}
     own = {key: list(value) if isinstance(value, tuple) else value for key, value in own.items()}
     normal = [{"n": n, "re": value.real, "im": value.imag} for n, value in contact.nu.items()]

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from ..model.general import refuse_modes, refuse_phases
+from ..model.general import refuse_banks, refuse_modes, refuse_phases
 from ..model.settings import Solver, Start
 from ..model.system import System
 from ..model.variations import named_number
@@ -42,6 +42,7 @@ class Scene:
 
     def __post_init__(self) -> None:
         refuse_phases(self.system, "show a page")
+        refuse_banks(self.system, "show a page")
         object.__setattr__(self, "changed", lru_cache(_KEPT)(self._changed))
 
     @property

@@ -9,7 +9,7 @@ from typing import Any, get_args
 
 from .. import checks
 from ..datasets.questions import records
-from ..model.contact import CONTACTS, MOST_CONTACTS
+from ..model.contact import BANKS, CONTACTS, MOST_CONTACTS, MOST_ELEMENTS
 from ..model.friction_law import MOST_POINTS, SHAPES
 from ..model.general import BASE_CONTROLS
 from ..model.periodic_load import MOST_HARMONICS
@@ -186,7 +186,7 @@ _HARMONIC = {
 
 def _elements(key: str, **ends: float) -> Schema:
     """A number of a contact, or a list of them, > 0, for a bank of elements."""
-    several_of = several(_or_unit(number(above=0.0), key), maxItems=MOST_CONTACTS)
+    several_of = several(_or_unit(number(above=0.0), key), maxItems=MOST_ELEMENTS)
     return either(_or_unit(number(**ends), key), several_of)
 
 
@@ -376,6 +376,7 @@ GENERAL_KEYS = (
                     "mu": number(least=1.0),
                     "name": _NAME,
                     "stiffness": _elements("contacts[].stiffness", above=0.0),
+                    "bank": word(*BANKS),
                     "wall_velocity": _or_unit(number(), "contacts[].wall_velocity"),
                     "wall_speed": _or_unit(number(), "contacts[].wall_speed"),
                     "normal_load": _NORMAL,
@@ -387,8 +388,8 @@ GENERAL_KEYS = (
             maxItems=MOST_CONTACTS,
         ),
         example='[{ kind = "fixed-wall", masses = [1] }, { kind = "between-masses", masses = [1, 2] }]',
-        words="a list of { kind, masses, ratio or force, mu, name, stiffness, wall_velocity or wall_speed, "
-        "normal_load, law or law_file, normal }; "
+        words="a list of { kind, masses, ratio or force, mu, name, stiffness, bank, wall_velocity or "
+        "wall_speed, normal_load, law or law_file, normal }; "
         "lists of stiffness and ratio or force make a bank of elements",
     ),
 )

@@ -52,9 +52,9 @@ def rest_states(system: System, modal: ModalSystem, r: np.ndarray) -> np.ndarray
     phi, mass = modal.phi, modal.mass
     x = np.zeros(len(mass))
     u = sum(value.real for value in general.base.values())
-    for group in general.groups:
-        if group.base:
-            x += u * group.vector / (group.vector @ group.vector)
+    moved = {group.vector.tobytes(): group.vector for group in general.groups if group.base}
+    for vector in moved.values():  # of parallel contacts once
+        x += u * vector / (vector @ vector)
     state = np.zeros((r.size, 2, phi.shape[1]))
     state[:, 0] = phi.T @ mass @ x
     alone = moving_alone(system, modal)

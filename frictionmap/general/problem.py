@@ -7,7 +7,7 @@ import numpy as np
 from .._kernels.general.problem import FLAT, UNCOUPLED, Coupling, Law, Problem
 from ..errors import InputError
 from ..model.friction_law import FrictionLaw
-from ..model.general import LOOP, ContactSystem, refuse_law
+from ..model.general import LOOP, ContactSystem, refuse_banks, refuse_law
 from ..model.points import Points
 from ..model.system import System
 from .certificate import certified_friction
@@ -296,6 +296,7 @@ def problem_of(
     loops : whether contacts that close loops are offered
     """
     general = general_of(system)
+    refuse_banks(system, "compute this")
     if not loops:
         refuse_loop(general)
     modal = modal_system(system)

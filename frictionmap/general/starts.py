@@ -23,6 +23,11 @@ _EQUAL = 1e-9
 def initial_states(system: System, problem: Problem, modal: ModalSystem, start: Start) -> np.ndarray:
     """Modes, their velocities q', and the phase at which they are so, (n_r, 3, m); see `from_rest`."""
     r = np.where(problem.r > 0.0, problem.r, 1.0)  # placeholder: no cell at r = 0 is followed
+    return states_at(system, modal, r, start)
+
+
+def states_at(system: System, modal: ModalSystem, r: np.ndarray, start: Start) -> np.ndarray:
+    """The states of `initial_states` at r > 0."""
     if start == "moving":
         return _moving_states(system, modal, r)
     rest = rest_states(system, modal, r)

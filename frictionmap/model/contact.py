@@ -18,8 +18,14 @@ CONTACTS = ("fixed-wall", "joined-base-wall", "between-masses")
 #: Keys of a wall that moves: over the velocity of the load at its frequency, or at that of r = 1.
 WALLS = ("wall_velocity", "wall_speed")
 
-#: Contacts of a system at most, each element of a bank as one.
+#: Contacts of a system at most, and elements of banks that are contacts of their own.
 MOST_CONTACTS = 64
+
+#: Elements of one bank at most.
+MOST_ELEMENTS = 200
+
+#: What the contacts of a bank are: its elements, or one contact.
+BANKS = ("elements", "contact")
 
 
 def without_wall(kind: str, name: str, given: object) -> InputError:
@@ -49,7 +55,10 @@ class Contact(Shown):
         Default: the kind and the masses, such as "between-masses 2-3".
     stiffness : float or sequence of float, optional
         Stiffness k_t/k_1 [-] of a spring in series with the slider, > 0 (Jenkins element); default: rigid.
-        A list makes a bank of as many elements in parallel (Iwan model).
+        A list makes a bank of as many elements in parallel (Iwan model), 200 at most.
+    bank : {"elements", "contact"}, optional
+        Whether the elements of a bank are contacts, with results of their own, or the bank is one contact;
+        default: "elements" of systems with up to 64 of them in all, else "contact".
     wall_velocity : float
         Velocity of the wall over omega P/k_1 [-]; "fixed-wall" only.
     wall_speed : float
@@ -90,6 +99,7 @@ class Contact(Shown):
     law: Any = None
     law_file: Any = None
     normal: Any = None
+    bank: Literal["elements", "contact"] | None = None
     nu: Mapping[int, complex] = field(init=False, repr=False, compare=False, default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -139,7 +149,17 @@ class Contact(Shown):
         object.__setattr__(self, name, value)
 
     def _check_bank(self) -> None:
-        """Refuse friction per element without as many elements."""
+        """Refuse friction per element without as many elements, and keys of banks without one."""
+        if isinstance(self.stiffness, tuple) and len(self.stiffness) > MOST_ELEMENTS:
+            raise InputError(
+                "stiffness", f"must have at most {MOST_ELEMENTS} elements; got {len(self.stiffness)}"
+            )
+        if self.bank is not None:
+            checks.choice(self.bank, "bank", BANKS)
+            if not isinstance(self.stiffness, tuple):
+                raise InputError(
+                    "cannot use", "bank", "without a list of stiffness: it is for banks; omit it"
+                )
         for name in ("ratio", "force"):
             given = getattr(self, name)
             if not isinstance(given, tuple):
@@ -244,7 +264,7 @@ class Contact(Shown):
         count = len(self.stiffness)
         return tuple(
             replace(
-                self, name=f"{self.label}, element {k + 1}", stiffness=self.stiffness[k],
+                self, name=f"{self.label}, element {k + 1}", stiffness=self.stiffness[k], bank=None,
                 ratio=_share(self.ratio, k, count), force=_share(self.force, k, count),
             )
             for k in range(count)

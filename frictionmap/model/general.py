@@ -15,7 +15,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from ..structures.dofs import Dofs
-from .contact import MOST_CONTACTS, WALLS, Contact, checked_contacts
+from .contact import BANKS, MOST_CONTACTS, WALLS, Contact, checked_contacts
 from .normal_contact import MovingNormal
 from .periodic_load import (
     DEFAULT_HARMONICS,
@@ -124,7 +124,7 @@ _Definition = TypeVar("_Definition", bound=Definition)
 
 @dataclass(frozen=True)
 class MergedContact:
-    """A contact, several parallel rigid ones that act as one, or an element of a bank."""
+    """A contact, several parallel rigid ones that act as one, a bank, or an element of a bank."""
 
     members: tuple[Contact, ...]
     vector: np.ndarray  # (n,) c
@@ -138,8 +138,14 @@ class MergedContact:
 
     @property
     def stiffness(self) -> float | None:
-        """Stiffness of its spring over k1; None if it is rigid."""
-        return self.first.stiffness  # type: ignore[return-value]
+        """Stiffness of its spring over k1, of a bank that of all springs; None if it is rigid."""
+        own = self.first.stiffness
+        return float(sum(own)) if isinstance(own, tuple) else own  # type: ignore[return-value]
+
+    @property
+    def is_bank(self) -> bool:
+        """Whether it is a bank of elements as one contact."""
+        return isinstance(self.first.stiffness, tuple)
 
     @property
     def name(self) -> str:
@@ -161,7 +167,9 @@ class MergedContact:
         """Kinetic friction of a member; with a moving normal force that at preload."""
         if one.has_preload:
             return one.normal.friction * max(0.0, one.normal.preload) + 0.0 * beta
-        return one.ratio * beta if one.force is None else one.force
+        if one.force is None:
+            return (sum(one.ratio) if isinstance(one.ratio, tuple) else one.ratio) * beta
+        return sum(one.force) if isinstance(one.force, tuple) else one.force
 
 
 @dataclass(frozen=True)
@@ -266,6 +274,11 @@ class ContactSystem:
     def elastic(self) -> np.ndarray:
         """Whether each contact has a spring, (N,) bool."""
         return np.array([group.stiffness is not None for group in self.groups])
+
+    @property
+    def has_banks(self) -> bool:
+        """Whether a contact is a bank of elements."""
+        return any(group.is_bank for group in self.groups)
 
     @property
     def has_law(self) -> bool:
@@ -374,6 +387,20 @@ def refuse_phases(system: Definition, what: str) -> None:
         )
 
 
+def refuse_banks(system: Definition, what: str) -> None:
+    """Refuse banks that are one contact.
+
+    what : words after "cannot", such as "compute motions under records"
+    """
+    for group in () if system.general is None else system.general.groups:
+        if group.is_bank:
+            raise InputError(
+                f"cannot {what} with {group.name}, a bank of {len(group.first.elements)} elements as one "
+                f"contact: this is offered where up to {MOST_CONTACTS} elements are contacts; use "
+                f'bank = "elements"'
+            )
+
+
 def contacts_of(system: Definition) -> tuple[Contact, ...]:
     """The contacts of a system, in either form; banks as one contact each."""
     if system.contacts is not None:
@@ -441,13 +468,10 @@ def vector_of(contact: Contact, dofs: Dofs, key: str) -> np.ndarray:
 
 
 def _groups(system: Definition) -> tuple[MergedContact, ...]:
-    """The contacts of a system, banks as their elements, parallel rigid ones merged."""
+    """The contacts of a system, banks as their elements or as one, parallel rigid ones merged."""
     found: list[MergedContact] = []
     contacts = contacts_of(system)
-    elements = [(k, element) for k, one in enumerate(contacts, 1) for element in one.elements]
-    if len(elements) > MOST_CONTACTS:
-        key = "contact_stiffness" if system.contacts is None else "contacts"
-        raise InputError(key, f"must have at most {MOST_CONTACTS} elements in all; got {len(elements)}")
+    elements = _elements(system, contacts)
     for k, contact in elements:
         name = f"contacts[{k}]" if system.contacts is not None else "contact"
         base = int(contact.kind == "joined-base-wall")
@@ -474,6 +498,20 @@ def _groups(system: Definition) -> tuple[MergedContact, ...]:
     if not any(one.ratio or one.force or one.has_preload for one in contacts):
         raise InputError("contacts", "must have a ratio or a force > 0; got none")
     return tuple(found)
+
+
+def _elements(system: Definition, contacts: Sequence[Contact]) -> list[tuple[int, Contact]]:
+    """The contacts with their numbers, banks as their elements, or whole where there are too many."""
+    separate, whole = BANKS
+    many = sum(len(one.elements) for one in contacts if one.bank != whole) > MOST_CONTACTS
+    found: list[tuple[int, Contact]] = []
+    for k, one in enumerate(contacts, 1):
+        as_one = one.bank == whole or (many and one.bank != separate)
+        found += [(k, one)] if as_one else [(k, element) for element in one.elements]
+    if len(found) > MOST_CONTACTS:
+        key = "contact_stiffness" if system.contacts is None else "contacts"
+        raise InputError(key, f"must have at most {MOST_CONTACTS} elements in all; got {len(found)}")
+    return found
 
 
 def _may_merge(contact: Contact) -> bool:
@@ -682,7 +720,9 @@ def _describe_group(group: MergedContact, dofs: Dofs) -> str:
     }[one.kind]
     more = []
     if one.stiffness is not None:
-        more.append(f"contact stiffness {one.stiffness:g}")
+        more.append(f"contact stiffness {group.stiffness:g}")
+    if group.is_bank:
+        more.append(f"bank of {len(one.elements)} elements")
     if one.wall_velocity:
         more.append(f"wall velocity {one.wall_velocity:g}")
     if one.wall_speed:

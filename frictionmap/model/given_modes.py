@@ -187,6 +187,13 @@ def on_modes(system: Owner, modes: Modes, contacts: ContactSystem, frequency: fl
             "springs or contacts[].normal",
             "with modes: they are for chains and matrices; omit it",
         )
+    if contacts.has_banks:
+        raise InputError(
+            "cannot use",
+            "contacts[].bank",
+            "= 'contact', or more than 64 elements, with modes: such banks are for chains and matrices; use "
+            "fewer elements",
+        )
     shapes = modes.shapes * (np.sqrt(system.stiffness_scale) / frequency)
     rigid = any(group.stiffness is None for group in contacts.groups)
     residual = None

@@ -7,7 +7,7 @@ import numpy as np
 from .._kernels.general.problem import Problem
 from ..errors import InputError
 from ..general.problem import ModalSystem, fastest, law_of, modal_system, refuse_loop, springs, ties
-from ..model.general import ContactSystem, in_general_form, refuse_modes, refuse_phases
+from ..model.general import ContactSystem, in_general_form, refuse_banks, refuse_modes, refuse_phases
 from ..model.system import System
 from .channels import Drive
 
@@ -32,6 +32,7 @@ def structure_of(system: System) -> Structure:
     """Modes of a system in the form that the general engine takes."""
     refuse_phases(system, "compute motions under records")
     refuse_modes(system, "compute motions under records")
+    refuse_banks(system, "compute motions under records")
     system = in_general_form(system)
     general = system.contact_system
     refuse_loop(general)

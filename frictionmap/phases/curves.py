@@ -1,6 +1,7 @@
 """Response curves, cell by cell."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 
 import numpy as np
 import xarray as xr
@@ -52,15 +53,13 @@ def _cell(cycle: Cycle, asked: CurveSettings) -> dict[str, np.ndarray]:
     return values
 
 
-def _check(system: System, axes: Mapping[str, np.ndarray], asked: CurveSettings) -> None:
+def check_quantities(asked: CurveSettings, what: str) -> None:
+    """Refuse quantities that are not on offer; `what`: the systems, for the message."""
     for quantity in asked.quantities:
         if quantity not in _OFFERED:
             raise InputError(
-                f"cannot compute {quantity} with contacts that open or piecewise linear springs; valid "
-                f"quantities: {', '.join(_OFFERED)}"
+                f"cannot compute {quantity} with {what}; valid quantities: {', '.join(_OFFERED)}"
             )
-    refuse_static(system.contact_system, axes["mu"])
-    check_ratios(system, axes["r"])
 
 
 def phase_curves(
@@ -68,18 +67,35 @@ def phase_curves(
     progress: Progress | None, watch: Watch | None,
 ) -> xr.Dataset:  # fmt: skip
     """Compute response curves over the axes mu, r and beta; see `curves`."""
-    _check(system, axes, asked)
+    check_quantities(asked, "contacts that open or piecewise linear springs")
+    refuse_static(system.contact_system, axes["mu"])
+    check_ratios(system, axes["r"])
+    r = axes["r"]
+    given = [phase_system(system, float(one)) for one in r]
+
+    def find(i: int, beta: float, mu: float) -> Cycle:
+        return find_cycle(system, given[i], float(r[i]), beta, mu, solver)
+
+    limits = limit_variables(system, r, axes["mu"])
+    return curve_dataset(system, axes, asked, find, limits, progress, watch)
+
+
+def curve_dataset(
+    system: System, axes: Mapping[str, np.ndarray], asked: CurveSettings,
+    find: Callable[[int, float, float], Cycle], limits: Mapping[str, xr.Variable],
+    progress: Progress | None, watch: Watch | None,
+) -> xr.Dataset:  # fmt: skip
+    """The requested numbers of all cells, and the boundaries `limits`, labelled.
+
+    find : the steady motion at a number of r, beta and mu; it raises `NoSteadyState`
+    """
     mu, r, beta = axes["mu"], axes["r"], axes["beta"]
     shape = (mu.size, r.size, beta.size)
     tables: dict[str, np.ndarray] = {}
-    given = [phase_system(system, float(one)) for one in r]
     for done, (m, i, b) in enumerate(np.ndindex(shape), 1):
         values: dict[str, np.ndarray] = {"status": np.array(regimes.NOT_REACHED)}
-        try:
-            cycle = find_cycle(system, given[i], float(r[i]), float(beta[b]), float(mu[m]), solver)
-            values = _cell(cycle, asked)
-        except NoSteadyState:
-            pass
+        with suppress(NoSteadyState):
+            values = _cell(find(i, float(beta[b]), float(mu[m])), asked)
         for name, value in values.items():
             if name not in tables:
                 tables[name] = np.full((*shape, *np.shape(value)), LABELS[name].unresolved, dtype=float)
@@ -96,4 +112,4 @@ def phase_curves(
         name: of_cells(name, one, general.count) for name, one in tables.items() if has_output(name, general)
     }
     coords = {name: coordinate(name, values) for name, values in axes.items()} | contact_coordinates(system)
-    return xr.Dataset(variables | limit_variables(system, r, mu), coords=coords)
+    return xr.Dataset(variables | dict(limits), coords=coords)

@@ -94,6 +94,10 @@ def harmonic_phasors(cycle: Cycle, highest: int) -> dict[str, np.ndarray]:
         "friction_harmonic": points.friction,
     }  # fmt: skip
     found = {name: harmonics(one, points, highest, cycle.found.averaged) for name, one in values.items()}
+    if problem.moved.any():  # with the base
+        for n, place in cycle.system.at_frequency(cycle.r).contact_system.base.items():
+            if n <= highest:
+                found["contact_harmonic"][:, n] -= problem.moved * place
     if cycle.period:
         return found
     return {name: np.full_like(one, _UNKNOWN) for name, one in found.items()}

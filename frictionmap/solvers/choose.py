@@ -1,7 +1,7 @@
 """The engine of a system."""
 
 from ..errors import InputError
-from ..model.general import refuse_law, refuse_phases
+from ..model.general import refuse_banks, refuse_law, refuse_phases
 from ..model.system import System
 from .interface import Engine
 
@@ -28,6 +28,12 @@ def engine_of(system: System) -> Engine:
         )
     if system.contact_system.has_law and system.rigid_modes:
         refuse_law(system, "compute steady states of a free structure")
+    if system.contact_system.has_banks:
+        from .banks import BanksEngine
+
+        if system.rigid_modes:
+            refuse_banks(system, "compute steady states of a free structure")
+        return BanksEngine(system)
     if system.contact_system.has_phases:
         from .phases import PhasesEngine
 

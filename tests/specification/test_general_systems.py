@@ -263,19 +263,20 @@ REFUSED = [
     ({"contact_stiffness": -1.0}, "stiffness must be > 0; got -1"),
     ({"contact_stiffness": [1.0, 0.0]}, "contact_stiffness[1] must be > 0; got 0"),
     ({"contact_stiffness": []}, "contact_stiffness must have at least one value; got none"),
-    ({"contact_stiffness": [1.0] * 65}, "contact_stiffness must have at most 64 elements in all; got 65"),
+    ({"contact_stiffness": [1.0] * 201}, "stiffness must have at most 200 elements; got 201"),
     ({"contacts": [{**WALL, "ratio": [1, 2]}]}, "contacts[1].ratio must be one number unless stiffness is"),
     (
         {"contacts": [{**WALL, "stiffness": [1, 2], "ratio": [1]}]},
         "contacts[1].ratio must have as many values as stiffness (2); got 1",
     ),
+    ({"contacts": [{**WALL, "bank": "contact"}]}, "cannot use contacts[1].bank without a list of stiffness"),
     ({"contacts": [{**WALL, "stiffness": [1, -2]}]}, "contacts[1].stiffness[1] must be > 0; got -2"),
     (
         {"contacts": [{**WALL, "stiffness": [1, 2], "force": [1, 0]}]},
         "contacts[1].force[1] must be > 0; got 0",
     ),
     (
-        {"contacts": [{**WALL, "stiffness": [1.0] * 5}, {**WALL, "stiffness": [2.0] * 60}]},
+        {"contacts": [{**WALL, "stiffness": [1.0] * k, "bank": "elements"} for k in (5, 60)]},
         "contacts must have at most 64 elements in all; got 65",
     ),
     ({"normal_load": {1: 1.5}}, "normal_load must leave 1 + normal_load(tau) >= 0"),

@@ -1,0 +1,74 @@
+"""A structure whose contacts are banks of elastic elements, in one form."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Bank:
+    """A contact of elastic elements in parallel, in the order in which they slip.
+
+    direction : (n,) c
+    stiffness : (E,) k of the elements
+    ratio, force : (E,) friction of the elements: ratio times the grid's beta, plus force
+    moved : 1 where the wall moves with the base
+    """
+
+    direction: np.ndarray
+    stiffness: np.ndarray
+    ratio: np.ndarray
+    force: np.ndarray
+    moved: float = 0.0
+
+    def limits(self, beta: np.ndarray) -> np.ndarray:
+        """Elongations at which the elements slip, (B, E)."""
+        friction = self.ratio * beta[:, np.newaxis] + self.force
+        return np.asarray(friction / self.stiffness)
+
+    @property
+    def reaches(self) -> tuple[float, float]:
+        """Least elongation at which an element slips: per beta, and beside it; one of them is 0."""
+        per_beta, own = self.ratio / self.stiffness, self.force / self.stiffness
+        return float(per_beta.min()), float(own.min())
+
+
+def ordered(
+    direction: np.ndarray, stiffness: np.ndarray, ratio: np.ndarray, force: np.ndarray, moved: float
+) -> Bank:
+    """A bank of elements in any order, all of them with a ratio or all with a force."""
+    order = np.argsort((ratio + force) / stiffness, kind="stable")
+    return Bank(direction, stiffness[order], ratio[order], force[order], moved)
+
+
+class Start(NamedTuple):
+    """A state from which a motion is followed, with no force in the elements."""
+
+    x: np.ndarray  # (n,)
+    v: np.ndarray  # (n,) x'
+    tau: float  # phase
+
+
+@dataclass(frozen=True)
+class BankSystem:
+    """A structure with banks.
+
+    mass, damping, stiffness : (n, n)
+    contacts : Bank
+    loads : phasors (n,) by order
+    base : phasors of the base motion by order, for walls that move with it
+    """
+
+    mass: np.ndarray
+    damping: np.ndarray
+    stiffness: np.ndarray
+    contacts: tuple[Bank, ...]
+    loads: Mapping[int, np.ndarray] = field(default_factory=dict)
+    base: Mapping[int, complex] = field(default_factory=dict)
+
+    @property
+    def n(self) -> int:
+        """Number of masses."""
+        return self.mass.shape[0]

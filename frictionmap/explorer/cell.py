@@ -14,7 +14,7 @@ from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
 from .drawing import drawing_curves, drawing_of
 from .lines import values_of_lines
-from .numbers import numbers_of
+from .numbers import listed_contacts, numbers_of
 from .quantities import counted_of
 from .queries import PAGE, Query, needed
 from .sentences import describe_motion
@@ -73,9 +73,10 @@ def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
         "entries": [entry._asdict() for entry in entries],
         "comment": comment, "dofs": view.system.dofs.numbers,
         "contacts": [one.name for one in view.contacts] if k is None else [],
+        "listed": listed_contacts(view, values),
         "contact": view.contacts[0].name if k is not None and several else "",
         "still": ["stuck" if one.stiffness is None else "without slip" for one in view.contacts],
-        "drawing": drawing_of(view.system),
+        "drawing": drawing_of(view.system, k),
     }  # fmt: skip
     return header, {**curves_of(view, values), "numbers": numbers}
 
@@ -110,7 +111,7 @@ def curves_of(view: View, values: Mapping[str, np.ndarray]) -> dict[str, np.ndar
     drawn = {"tau": tau, "x": values["x"], **rows, "stretched": _stretched(view, values["friction"])}
     return {
         **{name: table.astype(np.float32) for name, table in drawn.items()},
-        **drawing_curves(system, tau),
+        **drawing_curves(system, tau, k),
         "states": direction.astype(np.int8),
         "direction": np.ascontiguousarray(direction if k is None else direction[k]).astype(np.int8),
     }

@@ -13,6 +13,9 @@ from .scene_parts import Contact
 #: choice any more.
 _OFFERED_PAIRS, _OFFERED_MASSES = 6, 24
 
+#: Contacts that are found by their names; more are numbered, too.
+_NAMED = 12
+
 #: Key of all contacts together, and beginning of that of one.
 _ALL, _ONE = "all", "contact-"
 
@@ -28,7 +31,11 @@ def contacts_of(system: System) -> tuple[Contact, ...]:
         own = _contact(system.contact, tuple(system.contact_masses), system.n)
         return (own, *(other for other in _others(system) if other.key != own.key))
     groups = system.contact_system.groups
-    each = tuple(Contact(f"{_ONE}{k}", group.name, "", ()) for k, group in enumerate(groups, 1))
+    numbered = len(groups) > _NAMED
+    each = tuple(
+        Contact(f"{_ONE}{k}", f"{k} {group.name}" if numbered else group.name, "", ())
+        for k, group in enumerate(groups, 1)
+    )
     return each if len(each) == 1 else (Contact(_ALL, "all contacts together", "", ()), *each)
 
 

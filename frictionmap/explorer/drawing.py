@@ -7,8 +7,8 @@ import numpy as np
 
 from ..model.system import System
 
-#: Masses that are drawn at most, and springs.
-_MASSES, _SPRINGS = 8, 12
+#: Masses, springs and contacts that are drawn at most.
+_MASSES, _SPRINGS, _CONTACTS = 8, 12, 12
 
 #: Springs that are weaker than this, relative to the stiffness of their masses, are rounding errors.
 _WEAK = 1e-9
@@ -17,6 +17,7 @@ _WEAK = 1e-9
 class DrawnContact(NamedTuple):
     """A contact of a drawing."""
 
+    row: int  # of all contacts, counted from 0
     name: str
     masses: list[int]  # places of its masses in the drawing: one beside a wall, two beside each other
     base: bool  # whether its wall moves with the base
@@ -24,13 +25,16 @@ class DrawnContact(NamedTuple):
     belt: float  # velocity of its wall
 
 
-def drawing_of(system: System) -> dict[str, Any]:
+def drawing_of(system: System, shown: int | None = None) -> dict[str, Any]:
     """Describe what is drawn: rows of `x` that are masses, springs, contacts, loaded masses.
 
     A spring is a pair of places in `rows`, -1 for the wall or base at the left.  Large and reduced structures
-    are drawn by their masses in contact and under load only, without springs.
+    are drawn by their masses in contact and under load only, without springs; of many masses and contacts
+    some are drawn.
+
+    shown : the contact that is shown, counted from 0, which is drawn in any case; None: all together
     """
-    rows = _rows(system)
+    rows = _rows(system, shown)
     complete = len(rows) == system.n
     return {
         "rows": rows,
@@ -39,13 +43,13 @@ def drawing_of(system: System) -> dict[str, Any]:
         "springs": _springs(system.modes.stiffness) if complete else [],
         "base": system.excitation == "base",
         "loaded": [rows.index(row) for row in _loaded(system) if row in rows],
-        "contacts": [contact._asdict() for contact in _contacts(system, rows)],
+        "contacts": [contact._asdict() for contact in _contacts(system, rows, shown)],
     }
 
 
-def drawing_curves(system: System, tau: np.ndarray) -> dict[str, np.ndarray]:
+def drawing_curves(system: System, tau: np.ndarray, shown: int | None = None) -> dict[str, np.ndarray]:
     """Motion of the base (tau,) and loads on the `loaded` masses (masses, tau), float32."""
-    rows = _rows(system)
+    rows = _rows(system, shown)
     loaded = [row for row in _loaded(system) if row in rows]
     if system.excitation == "base":
         phasors = system.contact_system.base
@@ -60,12 +64,14 @@ def _displacements_at(phasors: Mapping[int, np.ndarray], tau: np.ndarray) -> np.
     return np.asarray(total, dtype=np.float32)
 
 
-def _rows(system: System) -> list[int]:
-    """Rows of the masses that are drawn."""
+def _rows(system: System, shown: int | None) -> list[int]:
+    """Rows of the masses that are drawn: those of the contact that is shown first, then of the others."""
     if system.n <= _MASSES and system.reduction is None:
         return list(range(system.n))
-    touched = {int(row) for row in np.flatnonzero(system.contact_system.vectors.any(axis=0))}
-    return sorted([*touched, *(row for row in _loaded(system) if row not in touched)][:_MASSES])
+    vectors = system.contact_system.vectors
+    first = [] if shown is None else np.flatnonzero(vectors[shown]).tolist()
+    touched = np.flatnonzero(vectors.any(axis=0)).tolist()
+    return sorted(list(dict.fromkeys([*first, *touched, *_loaded(system)]))[:_MASSES])
 
 
 def _loaded(system: System) -> list[int]:
@@ -87,19 +93,19 @@ def _springs(stiffness: np.ndarray) -> list[list[int]]:
     return found if len(found) <= _SPRINGS else []
 
 
-def _contacts(system: System, rows: list[int]) -> list[DrawnContact]:
-    def places(vector: np.ndarray) -> list[int]:
-        return [rows.index(int(row)) for row in np.flatnonzero(vector)]
-
+def _contacts(system: System, rows: list[int], shown: int | None) -> list[DrawnContact]:
+    """The contacts whose masses are drawn, that which is shown among them."""
     groups = system.contact_system.groups
-    several = len(groups) > 1
+    drawn = [k for k, group in enumerate(groups) if np.isin(np.flatnonzero(group.vector), rows).all()]
+    order = sorted(drawn, key=lambda k: (k != shown, k))[:_CONTACTS]
     return [
         DrawnContact(
-            group.name if several else "",
-            places(group.vector),
-            bool(group.base),
-            group.stiffness is not None,
-            float(group.first.belt),
+            k,
+            groups[k].name if len(groups) > 1 else "",
+            [rows.index(row) for row in np.flatnonzero(groups[k].vector).tolist()],
+            bool(groups[k].base),
+            groups[k].stiffness is not None,
+            float(groups[k].first.belt),
         )
-        for group in groups
+        for k in sorted(order)
     ]

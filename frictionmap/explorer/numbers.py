@@ -9,8 +9,8 @@ from .. import regimes
 from .quantities import name_of_mass
 from .views import View
 
-#: Masses whose numbers are listed one by one.
-_LISTED = 12
+#: Masses and contacts whose numbers are listed one by one.
+_LISTED, _LISTED_CONTACTS = 12, 8
 
 Values = Mapping[str, np.ndarray]
 
@@ -69,9 +69,18 @@ def numbers_of(view: View, values: Values, limits: Values) -> tuple[list[Number]
     return [number for number, _ in found], np.array([value for _, value in found])
 
 
+def listed_contacts(view: View, values: Values) -> list[int]:
+    """The contacts that have numbers and charts of their own: of many the first ones that move."""
+    if view.shown is not None:
+        return [view.shown]
+    held = np.asarray(values["contact_regime"]) == regimes.PERMANENT_STICKING
+    order = np.argsort(held, kind="stable")[:_LISTED_CONTACTS]
+    return sorted(order.tolist())
+
+
 def _contact_numbers(view: View, values: Values) -> Iterator[tuple[Number, float]]:
     groups = view.system.contact_system.groups
-    for j in range(len(groups)) if view.shown is None else [view.shown]:
+    for j in listed_contacts(view, values):
         group = groups[j].name if len(groups) > 1 else ""
         held = groups[j].stiffness is None and values["contact_regime"][j] == regimes.PERMANENT_STICKING
         for number in _OF_CONTACT:

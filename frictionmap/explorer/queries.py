@@ -17,8 +17,8 @@ from .scene import Scene, checked_range
 from .scene_parts import Slider
 from .views import MOST_PIXELS, Piece, View
 
-#: Keys of a query; a page of many masses has some tens.
-_MOST_KEYS = 100
+#: Keys of a query: 64 contacts have some numbers each.
+_MOST_KEYS = 500
 
 #: Points of a cut.
 _MOST_POINTS = 8192

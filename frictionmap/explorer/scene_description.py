@@ -113,7 +113,7 @@ def describe_scene(scene: Scene, view: View) -> dict[str, Any]:
         "contacts": _contacts(scene, view),
         "placed": is_placed(scene.system),
         "quick": view.is_quick,
-        "drawing": drawing_of(view.system),
+        "drawing": drawing_of(view.system, view.shown),
         "goals": describe_goals(),
         "presets": [{"key": key, "label": preset.label} for key, preset in PRESETS.items()],
         **{key: value for key, value in description(scene, view).items() if key != "contact"},

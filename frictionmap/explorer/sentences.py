@@ -18,6 +18,17 @@ _ELASTIC = {
     regimes.CONTINUOUS: "slips without pause",
 }
 
+#: The same of many contacts; and that of a motion with stops, or slips.
+_MANY = {
+    regimes.PERMANENT_STICKING: "never slide or slip",
+    regimes.STICK_SLIP: "move and rest in turn",
+    regimes.CONTINUOUS: "never rest",
+    regimes.ONE_WAY_SLIDING: "slide one way only",
+}
+
+#: Contacts that have a sentence each, and contacts that are named in a sentence.
+_MOST = 8
+
 #: Boundaries by their symbols.
 _SYMBOLS = {"beta_lim": "β_lim", "beta_stick": "β_stick", "beta_noslip": "β_noslip"}
 
@@ -31,7 +42,8 @@ def describe_motion(
     """
     k, count = view.shown, view.system.contact_system.count
     shown = range(count) if k is None else [k]
-    found = [_describe_contact(view, values, j) for j in shown]
+    many = len(shown) > _MOST
+    found = _describe_many(view, values) if many else [_describe_contact(view, values, j) for j in shown]
     known = {name: float(one.item()) for name, one in limits.items() if name in _SYMBOLS}
     found += [_explained(beta, known)] if view.engine.has_closed_limits else _placed(beta, known)
     status = int(values["status"])
@@ -47,6 +59,18 @@ def _describe_contact(view: View, values: Mapping[str, np.ndarray], j: int) -> s
     elastic, regime = groups[j].stiffness is not None, int(values["contact_regime"][j])
     does = (_ELASTIC if elastic else _RIGID).get(regime) or _counted(values, j, elastic=elastic)
     return f"{who[0].upper()}{who[1:]} {does}."
+
+
+def _describe_many(view: View, values: Mapping[str, np.ndarray]) -> list[str]:
+    """How many contacts do what, and which those are where they are few."""
+    groups, found = view.system.contact_system.groups, []
+    each = np.asarray(values["contact_regime"])
+    for regime, does in _MANY.items():
+        which = np.flatnonzero(each == regime)
+        if which.size:
+            names = ": " + ", ".join(groups[j].name for j in which) if which.size <= _MOST else ""
+            found.append(f"{which.size} of {each.size} contacts {does}{names}.")
+    return found
 
 
 def _counted(values: Mapping[str, np.ndarray], j: int, *, elastic: bool) -> str:

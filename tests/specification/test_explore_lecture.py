@@ -1,4 +1,4 @@
-"""The page in a lecture room, on paper, in forced colours and for ears: what it shows and its words."""
+"""The page in a lecture, on paper, in forced colours and for ears: what is shown, and what words it has."""
 
 import re
 
@@ -62,8 +62,8 @@ GROUND = """() => {
   return data[0];
 }"""
 OVERLAP = """() => {
-  const [one, other] = ['#message', '#cells'].map(
-    (name) => document.querySelector(name).getBoundingClientRect());
+  const box = (name) => document.querySelector(name).getBoundingClientRect();
+  const [one, other] = ['#message', '#cells'].map(box);
   return one.height > 0 && one.top < other.bottom && one.bottom > other.top;
 }"""
 
@@ -141,7 +141,7 @@ def test_separate_texts_are_not_read_as_one(browser, request, where):
         assert page.evaluate(GLUED) == []
 
 
-def test_a_map_that_is_too_long_says_what_is_missing_beside_the_cells(browser, two):
+def test_a_coarse_map_says_beside_the_cells_how_many_there_would_be(browser, two):
     with page_of(browser, two.url, viewport=LARGE) as page:
         page.route("**/map?**", slow_first := SlowAnswers())
         page.evaluate(MOVE, ["mu", 500])

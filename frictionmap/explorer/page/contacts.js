@@ -2,7 +2,7 @@
 
 import { DRAWN, colour, massColour } from "./axes.js";
 import { around, draw } from "./chart.js";
-import { keyLine, make, spaced } from "./dom.js";
+import { keyLine, make, paragraph, spaced } from "./dom.js";
 import { row } from "./packet.js";
 
 /** A canvas in a frame that marks a moment over it. */
@@ -23,7 +23,10 @@ function figureOf(name, still) {
 /** Make the charts of a motion. @param {HTMLElement} element @param {object} motion  as the server sends it */
 export function layOut(element, motion) {
   const masses = make("figure", {}, make("figcaption", {}, ...spaced(namesOf(motion))), canvas("of-masses", "displacements of the masses over time"));
-  element.replaceChildren(masses, ...motion.contacts.map((name, k) => figureOf(name, motion.still[k])));
+  const { contacts, listed, still } = motion;
+  const missing = contacts.length - listed.length;
+  const note = missing > 0 ? [paragraph(`The charts and numbers are of ${listed.length} of ${contacts.length} contacts, those that move first. Choose a contact to see its own.`)] : [];
+  element.replaceChildren(masses, ...note, ...listed.map((k) => figureOf(contacts[k], still[k])));
 }
 
 function namesOf({ x, dofs }) {
@@ -60,9 +63,9 @@ export function drawContacts(element, motion, moment) {
   moment.line(ofMasses, draw(ofMasses, { x, y: around(...masses.map((line) => line.y)), lines: masses, yName: motion.units.length, xName: "time / excitation period" }), time);
   const loops = element.querySelectorAll(".of-loop");
   const histories = element.querySelectorAll(".of-contact");
-  motion.contacts.forEach((_, k) => {
-    const [z, friction] = [row(motion.z, k), row(motion.friction, k)];
-    const bands = bandsOf(row(motion.direction, k), time);
+  motion.listed.forEach((contact, k) => {
+    const [z, friction] = [row(motion.z, contact), row(motion.friction, contact)];
+    const bands = bandsOf(row(motion.direction, contact), time);
     const chart = (place, y, ink) => moment.line(place, draw(place, { x, y: around(y), lines: [{ x: time, y, colour: ink, width: 1.8 }], bands, left: 38 }), time);
     chart(histories[2 * k], z, colour("ink"));
     chart(histories[2 * k + 1], friction, colour("warm"));

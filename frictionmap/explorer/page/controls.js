@@ -1,6 +1,7 @@
 // Menus and sliders for the quantity shown and the parameters.
 
 import { short } from "./axes.js";
+import { MANY, addFinder, refill } from "./finder.js";
 import { FIELD, REFUSED, listenToField, writeIn } from "./field.js";
 
 /** Steps of a slider from its least to its most. */
@@ -49,7 +50,7 @@ export class Controls {
     if (!fixed) this.#presets(scene.presets);
     this.#choice("quantity", "colour", scene.quantities);
     if (fixed) return;
-    if (scene.contacts.length > 1) this.#choice("contact", "contact", scene.contacts).classList.add("contact");
+    if (scene.contacts.length > 1) this.#contact(scene);
     this.#starts();
   }
 
@@ -76,6 +77,14 @@ export class Controls {
     this.#fill(select, options);
     select.addEventListener("change", () => this.onChange({ [key]: select.value }));
     return made;
+  }
+
+  /** The menu of contacts; many are found by number or name. */
+  #contact({ contacts }) {
+    const made = this.#choice("contact", "contact", contacts);
+    made.classList.add("contact");
+    this.many = contacts.length > MANY;
+    if (this.many) addFinder(made, contacts);
   }
 
   #fill(select, options) {
@@ -145,11 +154,13 @@ export class Controls {
     for (const key of ["quantity", "contact", "record"]) {
       const select = this.form.querySelector(`#${key}`);
       if (select) select.value = view[key];
+      if (select && key === "contact" && this.many && select.value !== view[key]) refill(select, this.scene.contacts, view[key]);
     }
     for (const key of ["start", "cut"]) {
       for (const button of this.form.querySelectorAll(`[data-${key}]`)) button.ariaPressed = String(button.dataset[key] === view[key]);
     }
     for (const [key, { slider, number, range, places }] of this.sliders) {
+      if (this.many) range.parentElement.hidden = /^contacts\[/.test(key) && !key.startsWith(`${view.contact.replace(/^contact-(.*)/, "contacts[$1]")}.`);
       const value = key === "mu" ? view.mu : view.numbers[key] ?? slider.value;
       range.value = places ? places.indexOf(value) : Math.round(STEPS * shareAt(slider, value));
       range.ariaValueText = number.title = this.#words(slider, value);

@@ -53,6 +53,18 @@ function largest(values) {
   return most;
 }
 
+/** Levels above the masses, from 1, on which contacts between masses do not touch each other; 0 of others. */
+function levelsOf(contacts) {
+  const ends = []; // the last mass of each level
+  return contacts.map(({ masses }) => {
+    if (masses.length < 2) return 0;
+    const free = ends.findIndex((end) => end < masses[0]);
+    const level = free < 0 ? ends.length : free;
+    ends[level] = Math.max(ends[level] ?? 0, masses.at(-1));
+    return level + 1;
+  });
+}
+
 export class Drawing {
   #moving = [];
   #key = "";
@@ -92,7 +104,7 @@ export class Drawing {
   set(place) {
     for (const move of this.#moving) move(place);
     const at = Math.min(this.length - 1, Math.floor(place + 1e-6));
-    const stuck = this.about.contacts.map((_, k) => this.states[k * this.length + at] === 0);
+    const stuck = this.about.contacts.map(({ row }) => this.states[row * this.length + at] === 0);
     stuck.forEach((lit, k) => this.lights[k].classList.toggle("lit", lit));
     return stuck;
   }
@@ -140,7 +152,8 @@ export class Drawing {
 
   #build() {
     const { contacts } = this.about;
-    const between = contacts.filter(({ masses }) => masses.length > 1).length;
+    const levels = levelsOf(contacts);
+    const between = Math.max(0, ...levels);
     const long = this.about.springs.some(([from, to]) => from >= 0 && to > from + 1);
     this.top = 10 + LANE * between + (long ? 14 : 0);
     this.floor = this.top + BOX + PAD;
@@ -153,9 +166,8 @@ export class Drawing {
     this.about.springs.forEach((ends) => this.#spring(back, ends));
     this.about.rows.forEach((_, k) => this.#mass(masses, k));
     this.#load(masses);
-    let level = 0;
     contacts.forEach((contact, k) => {
-      if (contact.masses.length > 1) this.#between(front, contact, k, (level += 1));
+      if (contact.masses.length > 1) this.#between(front, contact, k, levels[k]);
       else this.#onWall(back, front, contact, k);
     });
   }
@@ -245,7 +257,7 @@ export class Drawing {
     const light = shape("g", { class: "light", "data-contact": k }, shape("circle", { class: "halo", cx: x, cy: y, r: 11 }), shape("circle", { class: "lamp", cx: x, cy: y, r: 6.5 }));
     if (this.about.contacts.length > 1) {
       const number = shape("text", { x, y: y + 3.2 });
-      number.textContent = k + 1;
+      number.textContent = this.about.contacts[k].row + 1;
       light.append(number);
     }
     group.append(light);
@@ -253,7 +265,7 @@ export class Drawing {
   }
 
   #stretch(k) {
-    return (place) => sampled(this.motion.stretched, place, k * this.length);
+    return (place) => sampled(this.motion.stretched, place, this.about.contacts[k].row * this.length);
   }
 
   /** Places of contacts that share a mass, side by side or one above the other. */

@@ -18,8 +18,8 @@ function change(before, after) {
 export function eventsOf({ states, tau, drawing: { contacts } }) {
   const found = [];
   for (let k = 1; k < tau.length; k += 1) {
-    const words = contacts.flatMap(({ name, elastic }, c) => {
-      const kind = change(states[c * tau.length + k - 1], states[c * tau.length + k]);
+    const words = contacts.flatMap(({ row, name, elastic }) => {
+      const kind = change(states[row * tau.length + k - 1], states[row * tau.length + k]);
       return kind ? [`${name || "the contact"} ${(elastic ? ELASTIC : RIGID)[kind]}`] : [];
     });
     if (words.length) found.push({ place: k, text: words.join("; ") });

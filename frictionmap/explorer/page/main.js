@@ -378,7 +378,7 @@ class Page {
     this.map.show(found);
     if (!this.map.whole && found.lines) legend(part("legend"), found); // boundaries without cells
     if (found.whole) {
-      part("system").textContent = found.about.system;
+      part("system").textContent = part("system").title = found.about.system;
       legend(part("legend"), found);
       if (this.#resized) this.update(); // second axes take room
     }

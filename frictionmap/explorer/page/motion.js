@@ -142,8 +142,10 @@ export class MotionPanel {
     this.drawing.show(motion);
     const { contacts } = motion.drawing;
     const several = contacts.length > 1;
-    const lights = contacts.map(({ name }, k) => make("span", {}, make("i", { className: "lamp" }), several ? `${k + 1} ${name}: ` : "contact: ", make("b")));
-    this.#part(".states").replaceChildren(...spaced(lights));
+    const lights = contacts.map(({ row: number, name }) => make("span", {}, make("i", { className: "lamp" }), several ? `${number + 1} ${name}: ` : "contact: ", make("b")));
+    const missing = motion.states.shape[0] - contacts.length;
+    const note = missing > 0 ? [`and ${missing} contacts that are not drawn`] : [];
+    this.#part(".states").replaceChildren(...spaced([...lights, ...note]));
   }
 
   /** Show a moment, a place between samples, in the drawing and the charts; returns it in words. */
@@ -296,9 +298,10 @@ export class MotionPanel {
 function atRest(drawing) {
   const still = (rows) => new Float32Array(2 * Math.max(1, rows));
   const { contacts, masses } = drawing;
+  const rows = Math.max(0, ...contacts.map(({ row: number }) => number + 1));
   return {
     drawing, tau: Float32Array.of(0, 2 * Math.PI), x: still(masses), z: still(1), base: still(1), load: still(drawing.loaded.length),
-    states: new Int8Array(2 * contacts.length), stretched: still(contacts.length),
+    states: new Int8Array(2 * rows), stretched: still(rows),
   };
 }
 

@@ -87,6 +87,12 @@ class Amounts:
         ratio = f"r = {rounded(r, digits=DIGITS)}"
         return f"{self.frequency(r, digits=DIGITS)} ({ratio})" if "frequency" in self._ones else ratio
 
+    def speed(self, v: float, towards: str = NEAREST, digits: int = _DIGITS) -> str:
+        """A belt speed, or its ratio."""
+        if "velocity" in self._ones:
+            return self._with_unit(v, "velocity", towards, digits)
+        return f"v = {rounded(v, towards, digits)}"
+
     def response(self, size: float, towards: str = NEAREST, digits: int = _DIGITS) -> str:
         """A response; a bound from above is rounded up."""
         if not math.isfinite(size):

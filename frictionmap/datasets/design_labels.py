@@ -79,6 +79,9 @@ _COMMON = {
         "least friction ratio with which contacts that are stuck stay so over "
         "the band: from some starts (one mass: from rest), not from all"
     ),
+    "beta_unique": beta_label(
+        "friction ratio up to which the steady state is proved to be the same from every start"
+    ),
     "at_r": r_label("frequency ratio that decides, or of the working point", nan=True),
     "beta_lim_of_r": beta_label("boundary of motion without stops", _OVER_R, nan=True),
     "beta_stick_of_r": beta_label("boundary to permanent sticking", _OVER_R),

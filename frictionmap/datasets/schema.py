@@ -75,12 +75,12 @@ def kind(ds: xr.Dataset) -> str:
     "belt".
     """
     of_belts = ("growth", "beta_sliding_lim", "cycle_speed_lim")
+    if "question" in ds.variables:
+        return "design"
     if "wall_speed" in ds.variables and any(name in ds.variables for name in of_belts):
         return "belt"
     if "estimate" in ds.variables:
         return "estimates"
-    if "question" in ds.variables:
-        return "design"
     if "record" in ds.variables and "scale" in ds.variables:
         return "spectrum" if "period" in ds.variables else "history"
     if any(name in SHARES for name in ds.variables):

@@ -15,7 +15,14 @@ from ..datasets.variables import stamp
 from ..model.system import System
 from ..units.scales import Scales, Units
 from .band import Band, peak_samples
-from .limits import boundary_samples, has_no_stop_limit, no_stop_limit, starts_matter, stick_limit
+from .limits import (
+    boundary_samples,
+    has_no_stop_limit,
+    no_stop_limit,
+    starts_matter,
+    stick_limit,
+    unique_friction,
+)
 from .minimum import Points
 from .optimum import THRESHOLD, TWO_PEAKS, Minimum, Optimum, find_optimum, irregular_cells, largest
 from .performance import PerformanceCurve
@@ -65,6 +72,7 @@ def answer(
     scales : Scales
     study : axes of the samples, as `sweep` takes them
     """
+    values = _with_unique(system, values)
     found = {"question": question, **values, **_answer_in_units(question, values, asked, scales)}
     variables = {name: _variable(name, value) for name, value in found.items()}
     coords = {name: variables.pop(name) for name in answer_axes() if name in variables}
@@ -79,10 +87,50 @@ def answer(
         study=study,
         units=units,
     )
-    table = {"question": question, "band": [band.low, band.high], **asked}
-    lines = [f"{key} = {value_text(value)}" for key, value in table.items()]
-    ds.attrs["config"] += "\n".join(["", "[design]", *lines, ""])
+    ds.attrs["config"] += _table_text(question, {"band": [band.low, band.high], **asked})
+    caution = _not_unique(question, values)
+    ds.attrs |= {"warnings": caution} if caution else {}
     return ds.assign_attrs(scale_attributes(scales), response=_response_in_words(asked))
+
+
+def unloaded_answer(
+    question: str, system: System, values: Mapping[str, Any], asked: Mapping[str, Any],
+    units: Units | None, scales: Scales,
+) -> xr.Dataset:  # fmt: skip
+    """Build the dataset of an answer about a belt without a load; arguments as in `answer`."""
+    found = {"question": question, **values, **_answer_in_units(question, values, asked, scales)}
+    variables = {name: _variable(name, value) for name, value in found.items()}
+    coords = {name: variables.pop(name) for name in answer_axes() if name in variables}
+    function, axes = f"design.{question.replace('-', '_')}", {"beta": np.array([values["beta"]])}
+    ds = stamp(xr.Dataset(variables, coords), function, record(question).title, system, axes, units=units)
+    ds.attrs["config"] += _table_text(question, asked)
+    ds.attrs |= {"system": system.describe_unloaded(), "excitation": "none"}
+    return ds.assign_attrs(scale_attributes(scales))
+
+
+def _table_text(question: str, asked: Mapping[str, Any]) -> str:
+    """The table [design] of a configuration that asks a question."""
+    lines = [f"{key} = {value_text(value)}" for key, value in {"question": question, **asked}.items()]
+    return "\n".join(["", "[design]", *lines, ""])
+
+
+def _with_unique(system: System, values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values, with the friction up to which the steady state is unique where friction has a law."""
+    unique = {"beta_unique": unique_friction(system, values["mu"])} if system.contact_system.has_law else {}
+    return {**values, **unique}
+
+
+def _not_unique(question: str, values: Mapping[str, Any]) -> str:
+    """What an answer does not prove where friction falls with the speed, in words; empty if it is proved."""
+    unique, beta = values.get("beta_unique", np.inf), values["beta"]
+    most = max([beta * (1.0 + values.get("spread", 0.0)), *values.get("interval_end", ())])
+    rests = beta >= values.get("beta_stuck", np.inf)
+    if question == "stuck" or rests or most <= unique:
+        return ""
+    words = f"above beta = {unique:.6g} the steady state is not proved to be the same from every start"
+    if not record(question).of_response:
+        return words
+    return f"{words}, and the larger response of those from rest and from a large sliding motion counts"
 
 
 def _response_in_words(asked: Mapping[str, Any]) -> str:
@@ -132,7 +180,8 @@ def peaks_answer(
     keys = {"response": task.response.as_config(), "mu": task.mu, "beta": [task.low, task.high], **asked}
     ds = answer(question, task.system, task.band, found, keys, task.units, task.scales, study)
     caution = irregular_cells(curve, best.beta)
-    return ds.assign_attrs(warnings=caution) if caution else ds
+    cautions = [words for words in (ds.attrs.get("warnings", ""), caution) if words]
+    return ds.assign_attrs(warnings="; ".join(cautions)) if cautions else ds
 
 
 def _peaks(curve: PerformanceCurve, optimum: Optimum, of_spread: bool) -> dict[str, Any]:

@@ -5,7 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import InputError
+from ..general.certificate import certified_beta, friction_to_rest
 from ..general.held import rest_scales, stick_scales
+from ..model.general import refuse_law
 from ..model.system import System
 from ..solvers.choose import engine_of
 from .band import Band
@@ -63,7 +65,7 @@ def needed_friction(system: System, r: np.ndarray) -> np.ndarray:
 def _scales(system: System, needed: np.ndarray, mu: float | None) -> np.ndarray:
     """Friction ratio at which each contact has the friction it needs, (n_r, N); mu as in `stick_limit`."""
     if mu is None:
-        return rest_scales(system.contact_system, needed)
+        return rest_scales(system.contact_system, friction_to_rest(system, needed))
     return stick_scales(system.contact_system, needed, np.array([mu]))[0]
 
 
@@ -71,7 +73,7 @@ def stick_limit(system: System, r: np.ndarray, mu: float | None) -> np.ndarray:
     """Friction ratio from which all contacts hold, (n_r,): beta_stick, or beta_noslip of elastic contacts.
 
     With static friction, of ratio mu, contacts that are at rest stay so.  With mu None kinetic friction
-    alone is enough: every motion comes to rest (theory.md 6).
+    alone is enough, at every speed: every motion comes to rest (theory.md 6, 11).
     """
     return _scales(system, needed_friction(system, r), mu).max(axis=1)
 
@@ -82,9 +84,14 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
     Raises
     ------
     InputError
-        All contacts are elastic: they have no such limit.
+        Contacts are elastic, or their friction depends on the speed: they have no such limit.
     """
     look()
+    refuse_law(
+        system,
+        "find friction without stops",
+        "where friction depends on the speed no limit of it is known; compute a map of stops_per_cycle",
+    )
     if not has_no_stop_limit(system):
         raise InputError(
             "cannot find friction without stops with contact_stiffness: a spring in the contact has no such "
@@ -95,12 +102,22 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
 
 def has_no_stop_limit(system: System) -> bool:
     """Whether `no_stop_limit` exists."""
-    return not system.contact_system.elastic.any()
+    return not system.contact_system.elastic.any() and not system.contact_system.has_law
 
 
 def starts_matter(system: System, mu: float) -> bool:
-    """Whether a cell may have several steady states: static friction exceeds kinetic friction somewhere."""
-    return not system.contact_system.has_equal_friction(mu)
+    """Whether a cell may have several steady states: static friction exceeds kinetic friction somewhere, or
+    friction falls with the speed, and no damping is known to outweigh it.
+    """
+    return np.isfinite(unique_friction(system, mu))
+
+
+def unique_friction(system: System, mu: float) -> float:
+    """Friction ratio up to which the steady state is proved to be the same from all starts (theory.md 11)."""
+    general = system.contact_system
+    if not general.has_equal_friction(mu):
+        return 0.0
+    return max(certified_beta(system), 0.0) if general.has_law else np.inf
 
 
 def may_reach(bracket: Brackets, level: float) -> Brackets:

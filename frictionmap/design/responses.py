@@ -11,7 +11,7 @@ from ..model.settings import Solver, Start
 from ..model.sizes import Sizes, Wanted
 from ..model.system import System
 from ..solvers.choose import engine_of
-from .limits import starts_matter
+from .limits import starts_matter, unique_friction
 from .watching import current_watch, look
 
 #: What is made small: the largest displacement of a mass, its first harmonic, the largest displacement in a
@@ -69,7 +69,7 @@ def checked_response(system: System, quantity: object, mass: object, contact: ob
 
 
 class Responses:
-    """The response at points, from both starts where the start may matter (mu > 1)."""
+    """The response at points, from both starts where the start may matter: mu > 1, or a falling law."""
 
     def __init__(self, system: System, response: Response, mu: float, threads: int | None) -> None:
         self.system, self.response, self.mu = system, response, mu
@@ -80,27 +80,41 @@ class Responses:
         self._engine.check_static(np.array([mu]))
         starts: Sequence[Start] = ("rest", "moving") if starts_matter(system, mu) else ("rest",)
         self._solvers = [Solver(start=start) for start in starts]
+        # with a law, less friction than this needs one start
+        self._unique = unique_friction(system, mu) if system.contact_system.has_law else -1.0
 
     def on_grid(self, r: np.ndarray, beta: np.ndarray) -> Values:
         """Values on a grid, (n_r, n_beta); r > 0 and beta >= 0 increase."""
+        found = self._grid_from(self._solvers[0], r, beta)
+        more = beta > self._unique
+        for solver in self._solvers[1:] if more.any() else ():
+            both = [Values(*(one[:, more] for one in found)), self._grid_from(solver, r, beta[more])]
+            for one, larger in zip(found, _largest(both), strict=True):
+                one[:, more] = larger
+        return found
+
+    def _grid_from(self, solver: Solver, r: np.ndarray, beta: np.ndarray) -> Values:
+        """Values on a grid from one start."""
         axes = {"mu": np.array([self.mu]), "r": r, "beta": beta}
-        parts = []
-        for solver in self._solvers:
-            look()
-            found = self._engine.sizes_on_grid(self._wanted, axes, solver, self._threads, current_watch())
-            parts.append(_values(found))
-        return _largest(parts)
+        look()
+        return _values(self._engine.sizes_on_grid(self._wanted, axes, solver, self._threads, current_watch()))
 
     def at(self, r: np.ndarray, beta: np.ndarray) -> Values:
         """Values at points r > 0 and beta >= 0, (k,)."""
-        parts = []
-        for solver in self._solvers:
-            look()
-            found = self._engine.sizes_at(
-                self._wanted, r, beta, self.mu, solver, self._threads, current_watch()
-            )
-            parts.append(_values(found))
-        return _largest(parts)
+        found = self._at_from(self._solvers[0], r, beta)
+        more = beta > self._unique
+        for solver in self._solvers[1:] if more.any() else ():
+            both = [Values(*(one[more] for one in found)), self._at_from(solver, r[more], beta[more])]
+            for one, larger in zip(found, _largest(both), strict=True):
+                one[more] = larger
+        return found
+
+    def _at_from(self, solver: Solver, r: np.ndarray, beta: np.ndarray) -> Values:
+        """Values at points from one start."""
+        look()
+        return _values(
+            self._engine.sizes_at(self._wanted, r, beta, self.mu, solver, self._threads, current_watch())
+        )
 
 
 def _values(found: Sizes) -> Values:

@@ -25,6 +25,7 @@ _OF_BAND = {
     "beta_no_stop_some_starts": "can be without stops up to",
     "beta_stuck": "sticks over the whole band from",
     "beta_stuck_some_starts": "can stay stuck from",
+    "beta_unique": "one steady state, proved, up to",
 }
 
 

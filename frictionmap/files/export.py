@@ -47,7 +47,7 @@ def _table(ds: xr.Dataset) -> Any:
     if kind(ds) == "estimates":
         return ds[list(OF_PARAMETERS)].to_dataframe()
     if kind(ds) == "design":
-        over = next((axis for axis in ("beta_search", "r_search") if axis in ds.coords), None)
+        over = next((axis for axis in ("beta_search", "r_search", "speed_search") if axis in ds.coords), None)
         lines = [name for name in ds.data_vars if ds[name].dims == (over,)]
         return (ds[lines] if over else ds).to_dataframe()
     if kind(ds) == "belt":

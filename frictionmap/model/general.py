@@ -361,13 +361,17 @@ def refuse_modes(system: Definition, what: str) -> None:
         )
 
 
-def refuse_law(system: Definition, what: str) -> None:
-    """Refuse friction over speed; `what`: words after "cannot", such as "compute motions under records"."""
+def refuse_law(
+    system: Definition, what: str, why: str = "friction over speed is not offered there; omit law"
+) -> None:
+    """Refuse friction over speed.
+
+    what : words after "cannot", such as "compute motions under records"
+    why : the reason, and what to do
+    """
     for k, one in enumerate(system.contacts or (), 1):
         if one.law is not None:
-            raise InputError(
-                f"cannot {what} with contacts[{k}].law: friction over speed is not offered there; omit law"
-            )
+            raise InputError(f"cannot {what} with contacts[{k}].law: {why}")
 
 
 def refuse_phases(system: Definition, what: str) -> None:

@@ -14,5 +14,6 @@ structure_map  these motions over mu, belt speed and beta
 opening        motions of contacts that open, and beside piecewise linear springs
 response       one motion in time, over one cycle
 sweep          all motions over mu, belt speed and beta; their limits alone
+quiet          belt speeds from which steady sliding is the only end of a motion
 =============  ==================================================================================
 """

@@ -12,6 +12,10 @@ _TYPES = {"regime": np.int8, "reachable": np.uint8, "status": np.int8}
 
 Law = tuple[np.ndarray, np.ndarray, np.ndarray]  # speeds, factors and slopes of its segments, (K,)
 
+#: Belt speeds that differ from a break point by this share of it are on it: the break point would be passed
+#: by vibrations as small as the rounding errors of the speed.
+_ON_BREAK = 1e-14
+
 #: Cells per job, some milliseconds of work.
 _TILE = 64
 
@@ -19,6 +23,12 @@ _TILE = 64
 def _segments(law: Law) -> Law:
     speeds, factors, slopes = (np.ascontiguousarray(one, float) for one in law)
     return speeds, factors, slopes
+
+
+def _on_breaks(speed: np.ndarray, breaks: np.ndarray) -> np.ndarray:
+    """Belt speeds, those next to a break point on it."""
+    nearest = breaks[np.argmin(np.abs(speed[:, np.newaxis] - breaks), axis=1)]
+    return np.where(np.abs(speed - nearest) <= _ON_BREAK * nearest, nearest, speed)
 
 
 def portraits(law: Law, zeta: float, mu: np.ndarray, wall_speed: np.ndarray, beta: np.ndarray) -> Portraits:
@@ -53,7 +63,8 @@ def portrait_jobs(
     law: Law, zeta: float, axes: tuple[np.ndarray, np.ndarray, np.ndarray], found: Portraits
 ) -> list[Job]:
     """Jobs that fill the portraits of all cells over (mu, wall_speed, beta)."""
-    mu, speed, beta = axes
+    mu, beta = axes[0], axes[2]
+    speed = _on_breaks(axes[1], np.asarray(law[0], float))
     rows = max(1, _TILE // max(1, beta.size))
     jobs: list[Job] = []
     for m in range(mu.size):

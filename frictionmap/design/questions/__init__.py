@@ -16,6 +16,7 @@ robust       the friction whose worst response within its spread, or over sample
 two_forces   the two friction forces with the least largest response over a band
 no_stop      the most friction without a stop anywhere in a band
 stuck        the least friction that holds over a band
+no_squeal    the least belt speed without squeal
 margin       how far a working point is from the boundaries of its regime
 ===========  ==========================================================================================
 """
@@ -23,12 +24,13 @@ margin       how far a working point is from the boundaries of its regime
 from .at_most import AT_MOST, at_most
 from .least_peak import LEAST_PEAK, least_peak
 from .margin import MARGIN, margin
+from .no_squeal import NO_SQUEAL, no_squeal
 from .no_stop import NO_STOP, no_stop
 from .robust import ROBUST, robust
 from .stuck import STUCK, stuck
 from .two_forces import TWO_FORCES, two_forces
 
-__all__ = ["at_most", "least_peak", "margin", "no_stop", "robust", "stuck", "two_forces"]
+__all__ = ["at_most", "least_peak", "margin", "no_squeal", "no_stop", "robust", "stuck", "two_forces"]
 
 #: All questions, in the order of menus; the first one is the default.
-RECORDS = (LEAST_PEAK, NO_STOP, STUCK, AT_MOST, MARGIN, ROBUST, TWO_FORCES)
+RECORDS = (LEAST_PEAK, NO_STOP, STUCK, AT_MOST, MARGIN, ROBUST, TWO_FORCES, NO_SQUEAL)

@@ -10,7 +10,6 @@ from ...datasets.amounts import DOWN, UP, Amounts, amounts_of, band_of
 from ...datasets.design_labels import beta_label, size_label
 from ...datasets.labels import Label
 from ...files.key import Key, either, number, with_unit
-from ...model.general import refuse_law
 from ...model.system import System
 from ...units.axes import require
 from ...units.scales import Units, scales_of
@@ -64,7 +63,6 @@ def at_most(
     from ..task import checked_number, checked_task
 
     checks.instance(system, "system", System)
-    refuse_law(system, "answer design questions")
     scales = scales_of(units, system)
     kind = "force" if quantity == "transmitted_force" else "length"
     require(scales, limit=(kind, limit), band=("frequency", band), beta=("force", beta))

@@ -10,7 +10,6 @@ from ...datasets.amounts import DIGITS, amounts_of
 from ...datasets.design_labels import beta_label, r_label
 from ...datasets.labels import Label
 from ...files.key import Key, either, number, with_unit
-from ...model.general import refuse_law
 from ...model.system import System
 from ...units.axes import KINDS, require
 from ...units.scales import Units, scales_of
@@ -62,7 +61,6 @@ def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units |
     from ..task import checked_number
 
     checks.instance(system, "system", System)
-    refuse_law(system, "answer design questions")
     scales = scales_of(units, system)
     require(scales, r=(KINDS["r"], r), beta=(KINDS["beta"], beta))
     r = checked_number(r, "r", KINDS["r"], scales, above=0.0, most=checks.LARGEST_RATIO)
@@ -96,7 +94,8 @@ def _regime_sentence(ds: "xr.Dataset") -> Iterator[str]:
     if not {"beta", "at_r"} <= set(ds.variables):
         return
     words, beta = amounts_of(ds), float(ds["beta"])
-    can = "can " if float(ds.get("mu", 1.0)) > 1.0 else ""
+    starts = float(ds.get("mu", 1.0)) > 1.0 or beta > float(ds.get("beta_unique", np.inf))
+    can = "can " if starts else ""
     does = ""
     if "beta_stick" in ds and beta >= float(ds["beta_stick"]):
         does = f"{can}stay{'' if can else 's'} stuck"

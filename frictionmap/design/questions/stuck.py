@@ -70,7 +70,10 @@ def _sentence(ds: "xr.Dataset") -> Iterator[str]:
     where = words.frequency(float(ds["at_r"])) if "at_r" in ds else ""
     if math.isinf(beta):
         at = f" at {where}" if where else ""
-        yield f"No friction holds{band_of(ds)}: the held structure resonates without damping{at}."
+        yield (
+            f"No friction holds{band_of(ds)}: the held structure resonates without damping{at}, a belt moves a "
+            "contact, or friction falls to 0 at a speed."
+        )
     else:
         decides = f" ({where} decides)" if where else ""
         yield whole_sentence(f"from {words.friction(beta, UP)} everything is stuck{band_of(ds)}{decides}")

@@ -14,6 +14,7 @@ from ..shapes import check_holds, to_draw
 from ..words import caption
 from .limits import draw_limits
 from .performance import draw_performance, draw_responses, draw_ridge
+from .speeds import draw_speeds
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -35,6 +36,7 @@ _PANELS = {
     "responses": _Panel(draw_responses, ("peak", "response_of_r", "curve")),
     "ridge": _Panel(draw_ridge, ("ratio_search", "peak_of_ratio", "beta_of_ratio", "second", "second_ratio")),
     "limits": _Panel(draw_limits, ("r_search",)),
+    "speeds": _Panel(draw_speeds, ("speed_search", "growth_of_speed", "sliding_speed_lim", "wall_speed")),
 }
 
 
@@ -51,6 +53,7 @@ def plot_design(
     without friction, and stuck.
     Of two forces also the least peak over the ratio of the second one.
     Of questions about boundaries: the boundaries over frequency, with the answer or the working point.
+    Of belts without a load: the growth of small vibrations over the belt speed, and where it squeals.
 
     Parameters
     ----------

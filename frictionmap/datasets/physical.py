@@ -81,7 +81,7 @@ def ones_of(ds: xr.Dataset) -> dict[str, float]:
         ones["time"] = 1.0 / omega
         if "length" in ones:
             ones["velocity"] = ones["length"] * omega
-    if "frequency" in ones and "length" in ones and "wall_speed" in ds.coords:
+    if "frequency" in ones and "length" in ones and {"wall_speed", "speed_search"} & set(ds.coords):
         ones["velocity"] = ones["length"] * 2.0 * math.pi * ones["frequency"]
     return ones
 

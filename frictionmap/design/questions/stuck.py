@@ -71,8 +71,8 @@ def _sentence(ds: "xr.Dataset") -> Iterator[str]:
     if math.isinf(beta):
         at = f" at {where}" if where else ""
         yield (
-            f"No friction holds{band_of(ds)}: the held structure resonates without damping{at}, a belt moves a "
-            "contact, or friction falls to 0 at a speed."
+            f"No friction holds{band_of(ds)}: the held structure resonates without damping{at}, a belt moves "
+            "a contact, or friction falls to 0 at a speed."
         )
     else:
         decides = f" ({where} decides)" if where else ""

@@ -157,7 +157,7 @@ def test_file_summary_configuration_and_picture(tmp_path, capsys):
     )
     assert main(["design", str(path), "-o", str(tmp_path / "pad.nc")]) == 0
     out = capsys.readouterr().out
-    assert "From 0.309 m/s nothing squeals with 160 N (least)." in out
+    assert "From 309 mm/s nothing squeals with 160 N (least)." in out
     assert "frequency of the squeal" in out
     assert "159.15 Hz" in out
     ds = read(tmp_path / "pad.nc")

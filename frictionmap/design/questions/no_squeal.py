@@ -25,8 +25,8 @@ _SPEEDS = {
     "proved_speed": "belt speed from which every motion is proved to end in steady sliding",
 }
 
-#: Belt speeds at which the growth is given, up to this multiple of the largest finite one of the answer.
-_COUNT, _SHOWN = 240, 1.25
+#: Belt speeds at which the growth is given, up to this multiple of the answer.
+_COUNT, _SHOWN = 240, 1.6
 
 
 def no_squeal(system: System, beta: Any, mu: float = 1.0, *, units: Units | None = None) -> "xr.Dataset":
@@ -128,8 +128,8 @@ def _unknown(sliding: float) -> str:
 
 def _searched(speeds: dict[str, float], last: float) -> np.ndarray:
     """Belt speeds at which the growth is given; `last`: last break point of the law."""
-    finite = [value for value in (*speeds.values(), last) if 0.0 < value < np.inf]
-    top = _SHOWN * max(finite, default=1.0)
+    known = (speeds["wall_speed"], speeds["sliding_speed_lim"], last, 1.0)
+    top = _SHOWN * next(value for value in known if 0.0 < value < np.inf)
     return np.linspace(top / _COUNT, top, _COUNT)
 
 

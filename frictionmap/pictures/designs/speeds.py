@@ -15,15 +15,14 @@ from ..second_axes import velocity_on_top
 
 
 def draw_speeds(ax: Axes, ds: xr.Dataset) -> list[Handle]:
-    """Draw the growth over the belt speed, and shade where it squeals by itself, after a push, and never."""
+    """Draw the growth over the belt speed, and shade where it squeals by itself and after a push."""
     speed, growth = ds["speed_search"].values, ds["growth_of_speed"].values
     right = float(speed[-1])
-    ends = [0.0, *(min(float(ds[name]), right) for name in ("sliding_speed_lim", "wall_speed")), right]
+    ends = [0.0, *(min(float(ds[name]), right) for name in ("sliding_speed_lim", "wall_speed"))]
     pushed = "squeals after a push" if "cycle_speed_lim" in ds else "may squeal after a push"
     looks = (
         (regimes.STICK_SLIP_CYCLE, "squeals by itself"),
         (regimes.CYCLE_WITHOUT_STOPS, pushed),
-        (regimes.STEADY_SLIDING, "quiet"),
     )
     handles: list[Handle] = []
     for (regime, label), low, high in zip(looks, ends[:-1], ends[1:], strict=True):

@@ -151,7 +151,7 @@ def _answer_in_units(
     transmitted = dict(asked.get("response", {})).get("quantity") == "transmitted_force"
     kind, name = ("force", "peak_N") if transmitted else ("length", "peak_m")
     one = scales.of(kind)
-    if one is not None and "peak" in values:
+    if one is not None and "peak" in values and "response" in asked:
         found[name] = np.asarray(values["peak"]) * one
     return found
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from ..model.held_structure import frequencies_with_held
+from ..model.held_structure import frequencies_of_phases, frequencies_with_held
 from ..model.system import System
 from ..units.axes import KINDS, ratios
 from ..units.scales import Scales
@@ -69,6 +69,8 @@ def _patterns(count: int) -> Iterator[tuple[int, ...]]:
 
 def natural_frequencies(system: System) -> np.ndarray:
     """Natural frequency ratios with contacts free and held, in all combinations of few; increasing."""
+    if system.contact_system.has_phases:
+        return frequencies_of_phases(system)
     patterns = _patterns(system.contact_system.count)
     return np.unique(np.concatenate([frequencies_with_held(system, pattern) for pattern in patterns]))
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,7 @@ def load_design(path: str | Path, overrides: Sequence[str] = (), threads: int | 
         arguments = _with_samples(question.name, _arguments(question, given), axes)
     except InputError as error:
         raise (within("design", error) if error.where else error) from None
-    if question.of_response:
+    if "threads" in signature(question.function).parameters:
         arguments["threads"] = threads
     ask = partial(_call_question, question.function, common.system, {**arguments, "units": common.units})
     return Design(common.title, path.stem, text, (*common.files, *files), question.name, ask)

@@ -11,6 +11,7 @@ local extremum of the samples.
 import numpy as np
 
 from ..general.held import orders_of
+from ..general.normal_resting import pressed_stiffness
 from ..general.problem import springs
 from ..model.held_structure import complex_frequencies
 from ..model.system import System
@@ -63,7 +64,8 @@ def stick_poles(system: System) -> np.ndarray:
     """Poles of the forces in contacts that are held: of the held structure, over the orders of the load."""
     modes, contacts = system.modes, system.contact_system
     held = contacts.vectors[~contacts.elastic]
-    stiffness = modes.stiffness + (contacts.vectors.T * springs(contacts)) @ contacts.vectors
+    closed = pressed_stiffness(system) if contacts.has_phases else modes.stiffness
+    stiffness = closed + (contacts.vectors.T * springs(contacts)) @ contacts.vectors
     p = complex_frequencies(modes.mass, modes.damping, stiffness, held)
     return (p / np.array(orders_of(contacts))[:, np.newaxis]).ravel()
 

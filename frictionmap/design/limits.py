@@ -7,7 +7,8 @@ import numpy as np
 from ..errors import InputError
 from ..general.certificate import certified_beta, friction_to_rest
 from ..general.held import rest_scales, stick_scales
-from ..model.general import refuse_law
+from ..general.normal_resting import is_known, resting_friction
+from ..model.general import refuse_law, refuse_phases
 from ..model.system import System
 from ..solvers.choose import engine_of
 from .band import Band
@@ -69,12 +70,38 @@ def _scales(system: System, needed: np.ndarray, mu: float | None) -> np.ndarray:
     return stick_scales(system.contact_system, needed, np.array([mu]))[0]
 
 
+def _resting(system: System, r: np.ndarray, mu: float | None) -> np.ndarray:
+    """The friction ratio of `stick_limit` where normal forces move with the structure, (n_r, 1)."""
+    look()
+    if not has_stick_limit(system):
+        return np.full((r.size, 1), np.nan)
+    return resting_friction(system, r, 1.0 if mu is None else mu)[:, np.newaxis]
+
+
+def has_stick_limit(system: System) -> bool:
+    """Whether `stick_limit` is known: without piecewise linear springs and contacts without friction."""
+    engine_of(system)  # it refuses free structures
+    return not system.contact_system.has_phases or is_known(system)
+
+
+def refuse_unknown_stick(system: System, what: str) -> None:
+    """Refuse a system without a known `stick_limit`; `what`: words after "cannot"."""
+    if not has_stick_limit(system):
+        raise InputError(
+            f"cannot {what} with piecewise linear springs or contacts without friction: the friction that "
+            f"holds has no closed form there; compute a map, or use question at-most"
+        )
+
+
 def stick_limit(system: System, r: np.ndarray, mu: float | None) -> np.ndarray:
     """Friction ratio from which all contacts hold, (n_r,): beta_stick, or beta_noslip of elastic contacts.
 
     With static friction, of ratio mu, contacts that are at rest stay so.  With mu None kinetic friction
-    alone is enough, at every speed: every motion comes to rest (theory.md 6, 11).
+    alone is enough, at every speed: every motion comes to rest (theory.md 6, 11).  Where normal forces move
+    with the structure they can rest, from some starts; NaN where this has no closed form.
     """
+    if system.contact_system.has_phases:
+        return _resting(system, r, mu)[:, 0]
     return _scales(system, needed_friction(system, r), mu).max(axis=1)
 
 
@@ -92,6 +119,8 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
         "find friction without stops",
         "where friction depends on the speed no limit of it is known; compute a map of stops_per_cycle",
     )
+    if system.contact_system.has_phases:
+        refuse_phases(system, "find friction without stops")
     if not has_no_stop_limit(system):
         raise InputError(
             "cannot find friction without stops with contact_stiffness: a spring in the contact has no such "
@@ -101,8 +130,9 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
 
 
 def has_no_stop_limit(system: System) -> bool:
-    """Whether `no_stop_limit` exists."""
-    return not system.contact_system.elastic.any() and not system.contact_system.has_law
+    """Whether `no_stop_limit` exists, and is known."""
+    contacts = system.contact_system
+    return not (contacts.elastic.any() or contacts.has_law or contacts.has_phases)
 
 
 def starts_matter(system: System, mu: float) -> bool:
@@ -149,9 +179,16 @@ def least_no_stop(system: System, band: Band, mu: float) -> tuple[Extreme, Point
 
 
 def largest_stick(system: System, band: Band, mu: float | None) -> Extreme:
-    """The largest friction ratio of `stick_limit` over a band; infinite at a pole."""
+    """The largest friction ratio of `stick_limit` over a band: infinite at a pole, NaN if unknown."""
+    if not has_stick_limit(system):
+        return Extreme(np.nan, np.nan)
+    phases = system.contact_system.has_phases
+
+    def of(r: np.ndarray) -> np.ndarray:
+        return _resting(system, r, mu) if phases else needed_friction(system, r)
+
     r = stick_samples(system, band)
-    needed = needed_friction(system, r)
+    needed = of(r)
     count = needed.shape[1]
     if np.isinf(needed).any():
         return Extreme(np.inf, float(r[np.argmax(needed.max(axis=1))]))
@@ -159,7 +196,7 @@ def largest_stick(system: System, band: Band, mu: float | None) -> Extreme:
     contact = np.repeat(np.arange(count), [one.m.size for one in peaks])
 
     def of_contacts(which: np.ndarray, r: np.ndarray) -> np.ndarray:
-        return needed_friction(system, r)[np.arange(r.size), contact[which]]
+        return of(r)[np.arange(r.size), contact[which]]
 
     places, values = refine_maxima(of_contacts, joined(peaks))
     best = [np.flatnonzero(contact == j)[np.argmax(values[contact == j])] for j in range(count)]
@@ -168,6 +205,7 @@ def largest_stick(system: System, band: Band, mu: float | None) -> Extreme:
     for sign in (-1.0, 1.0):
         beside = of_contacts(np.array(best), at * (1.0 + sign * _POLE))
         inside &= beside < 0.5 * most
-    scales = _scales(system, np.where(inside, np.inf, most)[np.newaxis], mu)[0]
+    most = np.where(inside, np.inf, most)
+    scales = most if phases else _scales(system, most[np.newaxis], mu)[0]
     j = int(np.argmax(scales))
     return Extreme(float(scales[j]), float(at[j]))

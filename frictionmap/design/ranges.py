@@ -41,7 +41,7 @@ def find_ranges(
     def values(beta: np.ndarray) -> np.ndarray:
         return largest(curve.at(beta))
 
-    _refuse_unknown(curve, limit)
+    refuse_unknown(curve, limit)
     ends = [crossing(values, points, int(k), limit) for k in changes(points, limit)]
     allowed = points.size <= limit
     begins_inside, ends_inside = bool(allowed[0]), bool(allowed[-1])
@@ -52,7 +52,7 @@ def find_ranges(
     return optimum, np.array(ends[0::2]), np.array(ends[1::2])
 
 
-def _refuse_unknown(curve: PerformanceCurve, limit: float) -> None:
+def refuse_unknown(curve: PerformanceCurve, limit: float) -> None:
     """Refuse a limit that all known responses at some friction keep, but perhaps not those of other cells."""
     for beta, cells in curve.unknown.items():
         if cells.peak <= limit:

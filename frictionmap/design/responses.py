@@ -78,7 +78,7 @@ class Responses:
         row = [*system.dofs.numbers].index(response.mass)
         self._wanted = Wanted(response.quantity, row, response.contact - 1)
         self._engine.check_static(np.array([mu]))
-        starts: Sequence[Start] = ("rest", "moving") if starts_matter(system, mu) else ("rest",)
+        starts: Sequence[Start] = ("rest", "moving") if _several_states(system, mu) else ("rest",)
         self._solvers = [Solver(start=start) for start in starts]
         # with a law, less friction than this needs one start
         self._unique = unique_friction(system, mu) if system.contact_system.has_law else -1.0
@@ -115,6 +115,13 @@ class Responses:
         return _values(
             self._engine.sizes_at(self._wanted, r, beta, self.mu, solver, self._threads, current_watch())
         )
+
+
+def _several_states(system: System, mu: float) -> bool:
+    """Whether both starts are followed: where they may matter, and a large sliding motion exists."""
+    if system.contact_system.has_phases:
+        return bool(system.modes.damping.any())
+    return starts_matter(system, mu)
 
 
 def _values(found: Sizes) -> Values:

@@ -14,7 +14,15 @@ from ..solvers.choose import has_closed_forms
 from ..units.axes import KINDS, ratios, require
 from ..units.scales import Scales, Units, scales_of
 from .band import Band, checked_band, peak_samples
-from .limits import Extreme, has_no_stop_limit, largest_stick, least_no_stop, starts_matter, stick_limit
+from .limits import (
+    Extreme,
+    has_no_stop_limit,
+    has_stick_limit,
+    largest_stick,
+    least_no_stop,
+    starts_matter,
+    stick_limit,
+)
 from .performance import Performance
 from .responses import Response, Responses, checked_response
 
@@ -89,6 +97,7 @@ def checked_task(
     spread : relative spread of the friction
     """
     checks.instance(system, "system", System)
+    _refuse_own_friction(system)
     scales = scales_of(units, system)
     require(scales, band=(KINDS["r"], band), beta=(KINDS["beta"], beta))
     found = checked_band(band, scales)
@@ -96,6 +105,19 @@ def checked_task(
     asked = checked_response(system, *response)
     low, high = range_of_friction(system, found, spread) if beta is None else _checked_range(beta, scales)
     return Task(system, found, asked, mu, low, high, threads, units, scales)
+
+
+def _refuse_own_friction(system: System) -> None:
+    """Refuse contacts whose friction all are fixed by a preload or a force: nothing is left to choose."""
+    groups = system.contact_system.groups
+    if any(one.friction(1.0, 1.0)[0] > one.friction(0.0, 1.0)[0] for one in groups):
+        return
+    k = next((k for k, one in enumerate(groups, 1) if one.first.has_preload), None)
+    if k is not None:
+        raise InputError(
+            f"cannot choose friction with contacts[{k}].normal.preload: it fixes the friction at preload of "
+            f"the contact, and no other has one that is searched; omit preload"
+        )
 
 
 def checked_number(given: Any, name: str, kind: str, scales: Scales, **ends: float) -> float:
@@ -131,6 +153,12 @@ def range_of_friction(system: System, band: Band, spread: float = 0.0) -> tuple[
     InputError
         The boundary to sticking is infinite or 0 over the whole band.
     """
+    if not has_stick_limit(system):
+        raise InputError(
+            "beta",
+            "must be two friction ratios with piecewise linear springs or contacts without friction: the "
+            "friction that holds has no closed form there; got none",
+        )
     stick = stick_limit(system, band.samples(_SOME, np.empty(0)), None)
     finite = stick[np.isfinite(stick) & (stick > 0.0)]
     if not finite.size:

@@ -9,7 +9,8 @@ observed         masses, drifts of storeys, accelerations, and the force on the 
 held             forces in contacts that do not slide, and the boundaries that follow from them
 slopes           steady sliding under friction over speed: slopes of its fall, one-way sliding
 normal_force     normal forces that move with the structure: no slip, steady sliding, flutter
-normal_limits    boundaries of one contact with such a normal force
+normal_resting   friction from which contacts with such normal forces can rest permanently
+normal_limits    boundaries of contacts with such normal forces
 loops            contacts that close a loop: permanent sticking, forces that are not determined
 closed_limits    friction without stops in closed form, where there is one
 no_stop          intervals of friction without stops

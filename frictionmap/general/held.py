@@ -100,6 +100,10 @@ def held_forces_of(
         kt = np.linalg.inv(flexibility[np.ix_(which, which)])
     w, pull = vectors[~elastic].T, pull_of(kt, vectors).T
     stiffness = system.modes.stiffness + pull @ vectors
+    for j in which:
+        normal = general.groups[j].normal  # a contact that is held is closed
+        if normal is not None:
+            stiffness = stiffness + normal.stiffness * np.outer(normal.direction, normal.direction)
     forces, motions = {}, {}
     for order in orders_of(general):
         matrix = np.zeros((r.size, n + w.shape[1], n + w.shape[1]), dtype=complex)

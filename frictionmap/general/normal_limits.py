@@ -1,7 +1,9 @@
-"""Boundaries of a system with one contact whose normal force moves with the structure, in closed form.
+"""Boundaries of a system with contacts whose normal force moves with the structure, in closed form.
 
 They hold for any friction at preload, because the phasors of the held structure do not depend on it.
 """
+
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -10,11 +12,11 @@ from .. import regimes
 from ..datasets.labels import LABELS
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError
-from ..model.general import MergedContact
+from ..model.general import MergedContact, contacts_of
 from ..model.normal_contact import MovingNormal
 from ..model.system import System
-from .held import linear_parts, orders_of
-from .normal_force import NormalSpring, Structure, locks_itself, no_slip_preload, sliding_limit
+from .normal_force import NormalSpring, Structure, locks_itself, sliding_limit
+from .normal_resting import is_known, resting_friction
 from .problem import general_of
 
 #: Kinds of `friction_lim` by what `normal_force.Limit` names them.
@@ -36,28 +38,29 @@ def _parts(system: System) -> tuple[Structure, MergedContact, MovingNormal, Norm
 
 
 def no_slip_friction(system: System, r: np.ndarray, mu: np.ndarray) -> np.ndarray:
-    """Friction at preload, phi N0, from which the contact can rest permanently, (n_mu, n_r); 0 if it locks
-    itself, NaN where no closed form holds.
+    """Friction ratio from which the contacts can rest permanently, (n_mu, n_r); 0 if one locks itself, NaN
+    where no closed form holds.
 
-    A contact on a belt cannot rest.
+    Of one contact with a given preload it is the friction at preload, phi N0.
+    Contacts on a belt cannot rest.
     """
-    parts = _parts(system)
-    found = np.full((mu.size, r.size), np.nan)
-    if parts is None or parts[1].first.belt:
-        return found
-    structure, group, normal, contact = parts
-    loads = {n: linear_parts(system, structure.stiffness, n, r)[1] for n in orders_of(general_of(system))}
-    for m, one in enumerate(mu):
-        phi = normal.friction * float(group.first.static_ratio(one))
-        for i, ratio in enumerate(r):
-            load = {n: vectors[i] for n, vectors in loads.items()}
-            preload = no_slip_preload(structure, contact, phi, float(ratio), load, group.stiffness)
-            found[m, i] = normal.friction * max(0.0, preload)
-    return found
+    general = general_of(system)
+    if not is_known(system) or any(group.first.belt for group in general.groups):
+        return np.full((mu.size, r.size), np.nan)
+    if general.count == 1 and general.groups[0].first.has_preload:
+        system = _without_preload(system)
+    return np.stack([resting_friction(system, r, float(one)) for one in mu])
+
+
+def _without_preload(system: System) -> System:
+    """A system of one contact whose friction at preload is beta."""
+    (contact,) = contacts_of(system)
+    normal = replace(contact.normal, preload=None)
+    return replace(system, contacts=[replace(contact, normal=normal)])
 
 
 def _resting_variable(system: System, r: np.ndarray, mu: np.ndarray) -> dict[str, xr.Variable]:
-    """The boundary to a contact at rest permanently: beta_noslip of an elastic one, else beta_stick."""
+    """The boundary to contacts at rest permanently: beta_noslip if one is elastic, else beta_stick."""
     found = no_slip_friction(system, r, mu)
     if np.isnan(found).any():
         return {}
@@ -87,17 +90,17 @@ def limit_variables(system: System, r: np.ndarray, mu: np.ndarray) -> dict[str, 
 
 
 def normal_boundaries(system: System, r: np.ndarray, mu: np.ndarray) -> xr.Dataset:
-    """Boundaries of a system with one contact whose normal force moves with the structure.
+    """Boundaries of a system with contacts whose normal force moves with the structure.
 
     Raises
     ------
     InputError
         There is no closed form for the system.
     """
-    if _parts(system) is None:
+    if _parts(system) is None and not is_known(system):
         raise InputError(
             "cannot compute boundaries of contacts that open or of piecewise linear springs: closed forms "
-            "are for one contact without such springs; use map"
+            "are for contacts with friction and without such springs; use map"
         )
     axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
     coords = {name: coordinate(name, axis) for name, axis in axes.items()}

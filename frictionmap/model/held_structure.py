@@ -4,7 +4,9 @@ With the contact held, chi.q = 0 for the free modes q.  Modal damping does not l
 are `damped_oscillators`.
 """
 
-from collections.abc import Sequence
+import itertools
+import math
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -12,7 +14,11 @@ import numpy as np
 from .damped_oscillators import damped_oscillators
 
 if TYPE_CHECKING:
+    from .general import MergedContact
     from .system import System
+
+#: Largest number of combinations of the states of contacts and springs that are all tried.
+_ALL_COMBINATIONS = 64
 
 
 class HeldStructure(NamedTuple):
@@ -89,6 +95,52 @@ def frequencies_with_held(system: "System", contacts: Sequence[int]) -> np.ndarr
     )
     rigid = np.array([one.vector for one in groups if one.stiffness is None])
     return constrained_frequencies(modes.mass, stiffness, rigid)
+
+
+def frequencies_of_phases(system: "System") -> np.ndarray:
+    """Natural frequencies with contacts open, sliding and held, and springs on each of their pieces.
+
+    Friction that follows the normal force, whose stiffness is not symmetric, is left out.  Of many
+    combinations those are tried in which one part differs from all the others.
+    """
+    general = system.contact_system
+    parts: list[list[tuple[np.ndarray, np.ndarray | None]]] = []  # states: stiffness, and a held direction
+    for group in general.groups:
+        c, none = group.vector, np.zeros((system.n, system.n))
+        states = [none] if group.normal is None else [none, _pressed(group)]
+        own = (group.stiffness or 0.0) * np.outer(c, c)
+        held = None if group.stiffness else c
+        parts.append([*((one, None) for one in states), (states[-1] + own, held)])
+    for spring in general.springs:
+        square = np.outer(spring.direction, spring.direction)
+        parts.append([(slope * square, None) for slope in sorted(set(spring.slopes))])
+    found = []
+    for places in _combinations([len(part) for part in parts]):
+        chosen = [part[k] for part, k in zip(parts, places, strict=True)]
+        stiffness = system.modes.stiffness + sum((one for one, _ in chosen), 0.0 * system.modes.stiffness)
+        held = np.array([c for _, c in chosen if c is not None])
+        found.append(constrained_frequencies(system.modes.mass, stiffness, held))
+    return np.unique(np.concatenate(found))
+
+
+def _pressed(group: "MergedContact") -> np.ndarray:
+    """Stiffness of the normal spring of a closed contact."""
+    assert group.normal is not None
+    return group.normal.stiffness * np.outer(group.normal.direction, group.normal.direction)
+
+
+def _combinations(counts: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """States of all parts: all of few combinations, else those in which one part differs from the others."""
+    if math.prod(counts) <= _ALL_COMBINATIONS:
+        yield from itertools.product(*map(range, counts))
+        return
+    for all_in in (0, 1):
+        base = [all_in * (count - 1) for count in counts]
+        yield tuple(base)
+        for k, count in enumerate(counts):
+            for state in range(count):
+                if state != base[k]:
+                    yield (*base[:k], state, *base[k + 1 :])
 
 
 def constrained_frequencies(mass: np.ndarray, stiffness: np.ndarray, held: np.ndarray) -> np.ndarray:

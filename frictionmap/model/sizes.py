@@ -4,9 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+#: The loss of normal force over the preload, the largest of all contacts: above 1 a contact opens.
+SEPARATION = "separation"
+
 
 class Wanted(NamedTuple):
-    """A size: "amplitude", "first_harmonic", "contact" or "transmitted_force"."""
+    """A size: "amplitude", "first_harmonic", "contact", "transmitted_force" or `SEPARATION`."""
 
     quantity: str
     row: int  # of the mass

@@ -54,8 +54,11 @@ CONTACT_NUMBERS = {
     "stiffness": "stiffness of contact {0}, over k_1",
     "wall_velocity": "wall velocity of contact {0}, over omega P/k_1",
     "wall_speed": "wall speed of contact {0}, over omega_1 P/k_1",
+    "normal.preload": "normal force of contact {0} at rest, over P",
+    "normal.stiffness": "normal stiffness of contact {0}, over k_1",
+    "normal.friction": "friction coefficient of contact {0}",
 }
-_OF_CONTACT = re.compile(r"contacts\[([1-9][0-9]*)\]\.([a-z_]+)")
+_OF_CONTACT = re.compile(r"contacts\[([1-9][0-9]*)\]\.([a-z_]+(?:\.[a-z_]+)?)")
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,7 @@ class Number:
     def dimension(self) -> str:
         """Name as a dimension or a coordinate."""
         if self.part:
-            return f"{self.key}_{self.place}_{self.part}"
+            return f"{self.key}_{self.place}_{self.part}".replace(".", "_")
         return self.key if self.place is None else f"{self.key}_{self.place}"
 
     @property
@@ -106,9 +109,26 @@ class Number:
         assert self.place is not None
         if self.place > len(values):
             raise self._beyond(len(values))
+        before = values[self.place - 1]
+        if self.part.startswith("normal."):
+            values[self.place - 1] = self._put_into_normal(before, value)
+            return values
         rival = {"force": {"ratio": None}, "ratio": {"force": None}}.get(self.part, {})
-        values[self.place - 1] = replace(values[self.place - 1], **{self.part: float(value)}, **rival)
+        values[self.place - 1] = replace(before, **{self.part: float(value)}, **rival)
         return values
+
+    def _put_into_normal(self, contact: Any, value: float) -> Any:
+        """Return a contact with this number of its normal force set to `value`.
+
+        A preload takes the place of the friction at preload.
+        """
+        if contact.normal is None:
+            raise InputError(
+                f"cannot use axis {self.text}: contacts[{self.place}] has no normal; give normal first"
+            )
+        part = self.part.removeprefix("normal.")
+        rival = {"ratio": None, "force": None} if part == "preload" else {}
+        return replace(contact, normal=replace(contact.normal, **{part: float(value)}), **rival)
 
     def _beyond(self, count: int) -> InputError:
         """Return the error of an index beyond a list with `count` entries."""

@@ -9,6 +9,7 @@ quantities  outputs of cells: names, what they are computed from
 motion      one motion in time, from the Taylor terms of its steps
 solve       steady motions over mu, r and beta
 given       the same of a system of the model
+responses   sizes of steady motions on a grid and at scattered points, for designs
 dataset     maps as labelled variables
 cycle       harmonics, works and phases of a steady motion
 response    one steady motion in time, as labelled variables

@@ -33,6 +33,7 @@ class Solved(NamedTuple):
     presses: np.ndarray  # (N,) bool
     n: int
     loaded: bool  # whether there is a load, whose periods are cycles
+    observed: int  # rows observed: masses, storeys and further ones
 
     def rows(self, first: int, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest values of some rows."""
@@ -47,12 +48,16 @@ class Solved(NamedTuple):
         return self.rows(self.n, self.n)
 
     @property
+    def further(self) -> tuple[np.ndarray, np.ndarray]:
+        return self.rows(2 * self.n, self.observed - 2 * self.n)
+
+    @property
     def contacts(self) -> tuple[np.ndarray, np.ndarray]:
-        return self.rows(2 * self.n, self.law.size)
+        return self.rows(self.observed, self.law.size)
 
     @property
     def normal_forces(self) -> tuple[np.ndarray, np.ndarray]:
-        return self.rows(2 * self.n + self.law.size, self.law.size)
+        return self.rows(self.observed + self.law.size, self.law.size)
 
     @property
     def recorded(self) -> np.ndarray:
@@ -189,5 +194,6 @@ FREE_TABLE = {
 
 
 def solved_of(problem: Problem, cells: Cells, loaded: bool = True) -> Solved:
-    """Cells of a system whose rows observed are its masses and its storeys."""
-    return Solved(cells, problem.law, problem.presses, problem.observed.shape[0] // 2, loaded)
+    """Cells of a system whose rows observed begin with its masses and its storeys."""
+    n = problem.squares.size
+    return Solved(cells, problem.law, problem.presses, n, loaded, problem.observed.shape[0])

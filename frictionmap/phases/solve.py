@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..jobs import Job, Progress, Watch, run_counted
 from .arrays import Modal, allocate, grid_of, modal, problem_of, row_of
 from .motion import Steps, events, in_time, steps_of, works
-from .quantities import TABLE, solved_of
+from .quantities import TABLE, Solved, solved_of
 from .system import PhaseSystem
 
 #: Outputs where none are named.
@@ -80,27 +80,37 @@ def sweep_phases(
     """
     _unknown(outputs)
     r, beta, mu = (np.atleast_1d(np.asarray(axis, dtype=float)) for axis in (r, beta, mu))
+    rows = [(float(one), float(ratio), beta) for ratio in mu for one in r]
+    solved = solve_rows(system, rows, observed_rows(system.n), start, cycles, threads, progress, watch)
+    shape = (mu.size, r.size, beta.size)
+    tables = {name: np.stack([TABLE[name](one) for one in solved]) for name in outputs}
+    return {name: table.reshape(shape + table.shape[2:]) for name, table in tables.items()}
+
+
+def solve_rows(
+    system: PhaseSystem, rows: Sequence[tuple[float, float, np.ndarray]], observed: np.ndarray,
+    start: Start, cycles: int, threads: int, progress: Progress | None, watch: Watch | None,
+) -> list[Solved]:  # fmt: skip
+    """Steady motions of rows of cells, each of one r and mu over some beta.
+
+    observed : (R, n) displacements whose extremes are wanted; the first ones are those of `observed_rows`
+    """
     modes = modal(system)
-    problem = problem_of(system, modes, observed_rows(system.n))
+    problem = problem_of(system, modes, observed)
     cancel = np.zeros(1, np.uint8)
     jobs: list[Job] = []
     found: list[Cells] = []
-    for ratio in mu:
-        for one in r:
-            grid = grid_of(system, modes, beta, float(ratio), cycles)
-            grid = grid._replace(start=start_state(system, modes, float(one), start))
-            found.append(allocate(problem, beta.size))
-            row = row_of(system, problem, modes, float(one))
-            jobs.append((fill_cells, (problem, row, grid, 0, found[-1], cancel)))
+    for r, mu, beta in rows:
+        grid = grid_of(system, modes, beta, mu, cycles)
+        grid = grid._replace(start=start_state(system, modes, r, start))
+        found.append(allocate(problem, beta.size))
+        jobs.append((fill_cells, (problem, row_of(system, problem, modes, r), grid, 0, found[-1], cancel)))
     try:
         run_counted(jobs, threads, progress, watch)
     except BaseException:
         cancel[0] = 1
         raise
-    solved = [solved_of(problem, one) for one in found]
-    shape = (mu.size, r.size, beta.size)
-    tables = {name: np.stack([TABLE[name](one) for one in solved]) for name in outputs}
-    return {name: table.reshape(shape + table.shape[2:]) for name, table in tables.items()}
+    return [solved_of(problem, one) for one in found]
 
 
 def response_phases(

@@ -65,10 +65,10 @@ class PhasesEngine(Engine):
         raise AssertionError  # every system of this engine is refused
 
     def needed_friction(self, r: np.ndarray) -> np.ndarray:
-        self._refuse("answer design questions")
+        self._refuse("compute the friction that each contact needs")  # it depends on mu
 
     def no_stop_limit(self, r: np.ndarray, mu: float, watch: Watch | None) -> np.ndarray:
-        self._refuse("answer design questions")
+        self._refuse("find friction without stops")
 
     def limits(self, r: np.ndarray, mu: np.ndarray, watch: Watch | None = None) -> Limits:
         self._refuse("compute boundaries for this")
@@ -91,7 +91,7 @@ class PhasesEngine(Engine):
         self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
         progress: Progress | None, watch: Watch | None,
     ) -> tuple[dict[str, np.ndarray], Limits]:  # fmt: skip
-        self._refuse("answer design questions")
+        self._refuse("compute outputs of cells for this")
 
     def curves(
         self, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
@@ -108,18 +108,24 @@ class PhasesEngine(Engine):
 
     @property
     def sizes(self) -> tuple[str, ...]:
-        self._refuse("answer design questions")
+        from ..phases.responses import QUANTITIES
+
+        return QUANTITIES
 
     def sizes_on_grid(
         self, wanted: Wanted, axes: dict[str, np.ndarray], solver: Solver, threads: int, watch: Watch | None
     ) -> Sizes:
-        self._refuse("answer design questions")
+        from ..phases.responses import sizes_on_grid
+
+        return sizes_on_grid(self.system, wanted, axes, solver, threads, watch)
 
     def sizes_at(
         self, wanted: Wanted, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver, threads: int,
         watch: Watch | None,
     ) -> Sizes:  # fmt: skip
-        self._refuse("answer design questions")
+        from ..phases.responses import sizes_at
+
+        return sizes_at(self.system, wanted, r, beta, mu, solver, threads, watch)
 
     def states(self, r: np.ndarray, beta: np.ndarray, mu: float) -> "list[States]":
         self._refuse("compute first harmonics at points")

@@ -101,6 +101,8 @@ def test_base_motion_loads_the_contact_like_forces():
 def test_several_contacts_or_springs_have_no_such_closed_form():
     one = {"normal": {"mass": 1, "stiffness": 1.0, "friction": 0.3}}
     springs = fm.System(contacts=[one], springs=[{"gap": 0.5, "stiffness": 1.0}])
-    with pytest.raises(fm.InputError, match="closed forms are for one contact without such springs; use map"):
+    with pytest.raises(
+        fm.InputError, match="closed forms are for contacts with friction and without such springs"
+    ):
         fm.boundaries(springs, r=[0.5])
     assert math.isfinite(fm.boundaries(fm.System(contacts=[one]), r=[0.5])["beta_stick"].item())

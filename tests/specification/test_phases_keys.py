@@ -225,9 +225,7 @@ def test_functions_that_do_not_take_them_name_the_key():
         lambda: fm.history(system, record, beta=[1.0]),
         lambda: fm.borders(system, r=[0.5, 1.0], beta=[0.1, 1.0]),
         lambda: fm.continuous_motion(system, 0.5, 0.1),
-        lambda: fm.design.least_peak(system, (0.5, 1.5)),
         lambda: fm.design.no_stop(system, (0.5, 1.5)),
-        lambda: fm.design.stuck(system, (0.5, 1.5)),
         lambda: fm.features.peak_thresholds(system),
     ):
         with pytest.raises(fm.InputError, match=r"with contacts(\[1\]\.normal)?: "):

@@ -137,7 +137,7 @@ map good.toml --set solver.outputs=[]
 map good.toml --set 'solver.outputs=["regim"]'
     solver.outputs must be one of regime, stops_per_cycle, contact_amplitude, stuck_fraction, period, origin, cycles, status, multiplier, asymmetry, stops_per_cycle_error, stuck_fraction_error, lyapunov_exponent, lyapunov_exponent_error, also_reachable, sliding_limit, amplitude, sliding_distance, work_friction, work_input, work_damping, equivalent_damping, contact_first_harmonic_amplitude, contact_first_harmonic_phase, beta_lim_modal, contact_regime, turns_per_cycle, slips_per_cycle, slip_reversals_per_cycle, elastic_fraction, least_slip, contact_peak_to_peak, contact_midpoint, peak_to_peak, midpoint, work_wall, drift, acceleration_amplitude, base_force, mean_velocity, release_order, segment_crossings, segment_fraction, open_fraction, separations_per_cycle, normal_force_min, normal_force_max, spring_crossings, spring_force_max, unique; got 'regim' (did you mean regime?)
 map good.toml --set 'axes.damping_ratio=[0,0.1]'
-    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, wall_speed, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], dampers[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity, contacts[i].wall_speed; got 'damping_ratio' (did you mean damping_ratios?)
+    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, wall_speed, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], dampers[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity, contacts[i].wall_speed, contacts[i].normal.preload, contacts[i].normal.stiffness, contacts[i].normal.friction; got 'damping_ratio' (did you mean damping_ratios?)
 map good.toml --set 'axes={"mass_ratios[2]"=[1,2]}'
     axes, at mass_ratios_2 = 1: cannot use axis mass_ratios[2]: the system has 1 mass; use an index <= 1
 map good.toml --set 'axes={damping_ratios=[]}'
@@ -477,7 +477,7 @@ design good.toml
 design question.toml --set design.quest=stuck
     unknown key 'design.quest' (did you mean question?); valid: question, band, response, mu, beta, limit, r, spread, quantile, second, ratio
 design question.toml --set design.question=best
-    design.question must be one of least-peak, no-stop, stuck, at-most, margin, robust, two-forces; got 'best' (did you mean robust?)
+    design.question must be one of least-peak, no-stop, stuck, at-most, margin, robust, two-forces, no-separation; got 'best' (did you mean robust?)
 design good.toml --set design.question=stuck
     design.band must be given for question stuck; got nothing
 design question.toml --set design.band=[1]
@@ -514,6 +514,14 @@ design question.toml --set design.question=at-most --set design.limit=0.01 --set
     design.limit must be >= 1 Y, the least peak, at beta = ...; got 0.01
 design question.toml --set design.question=no-stop --set system.contact_stiffness=2.0
     [design]: cannot find friction without stops with contact_stiffness: a spring in the contact has no such limit; use question stuck
+design question.toml --set design.question=no-separation
+    [design]: cannot find a preload without a contact whose normal force moves with the structure: others never open; give contacts[1].normal
+design question.toml --set design.question=stuck --set 'system.springs=[{gap=0.5,stiffness=2.0}]'
+    [design]: cannot find friction that holds with piecewise linear springs or contacts without friction: the friction that holds has no closed form there; compute a map, or use question at-most
+design question.toml --set design.question=no-stop --set 'system.springs=[{gap=0.5,stiffness=2.0}]'
+    [design]: cannot find friction without stops with springs: contacts that open and piecewise linear springs are not offered there; omit springs
+design question.toml --set 'system.springs=[{gap=0.5,stiffness=2.0}]'
+    design.beta must be two friction ratios with piecewise linear springs or contacts without friction: the friction that holds has no closed form there; got none
 design question.toml --set design.question=margin --set design.r=0 --set design.beta=1
     design.r must be > 0; got 0
 design question.toml --set design.question=margin --set design.beta=1
@@ -733,7 +741,7 @@ fm.sweep(ONE, [1.0], [0.5], step=9)
 fm.sweep(ONE, [1.0], [0.5], threads=0)
     threads must be >= 1; got 0
 fm.sweep(ONE, [1.0], [0.5], axes={"zeta": [0.1]})
-    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, wall_speed, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], dampers[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity, contacts[i].wall_speed; got 'zeta'
+    axes must name a number of the system, i counted from 1: damping_ratios, load_mass, frequency_scale, stiffness_scale, contact_stiffness, wall_velocity, wall_speed, mass_ratios[i], stiffness_ratios[i], damping_ratios[i], dampers[i], load[i], contact_masses[i], contacts[i].force, contacts[i].ratio, contacts[i].mu, contacts[i].stiffness, contacts[i].wall_velocity, contacts[i].wall_speed, contacts[i].normal.preload, contacts[i].normal.stiffness, contacts[i].normal.friction; got 'zeta'
 fm.sweep(ONE, [1.0], [0.5], axes={"damping_ratios": [-0.1, 0.1]})
     axes, at damping_ratios = -0.1: damping_ratios must be >= 0; got -0.1
 fm.sweep(ONE, [1.0], [0.5], axes={"regime": {"load_mass": [1]}})

@@ -56,7 +56,7 @@ def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units |
     """
     from ..answers import answer, boundaries_over
     from ..band import Band
-    from ..limits import has_no_stop_limit, no_stop_limit, stick_limit
+    from ..limits import has_no_stop_limit, no_stop_limit, refuse_unknown_stick, stick_limit
     from ..nearest import around, nearest, no_stop_at, stick_at
     from ..task import checked_number
 
@@ -67,6 +67,7 @@ def margin(system: System, r: Any, beta: Any, mu: float = 1.0, *, units: Units |
     beta = checked_number(beta, "beta", KINDS["beta"], scales, above=0.0)
     mu = checks.number(mu, "mu", least=1.0)
     found: dict[str, Any] = {"at_r": r, "beta": beta, "mu": mu}
+    refuse_unknown_stick(system, "find margins")
     limits: dict[str, tuple] = {"beta_stick": (stick_limit, stick_at, "margin_r_stick")}
     if has_no_stop_limit(system):
         limits["beta_lim"] = no_stop_limit, no_stop_at, "margin_r"

@@ -33,7 +33,8 @@ def stuck(system: System, band: Any, mu: float = 1.0, *, units: Units | None = N
         `beta`, infinite where a structure that is held resonates without damping, and `at_r`, the frequency
         that decides; `beta_lim_of_r` and `beta_stick_of_r` on `r_search`.  With mu > 1 also
         `beta_stuck_some_starts`, the largest beta_stick, with which contacts that are stuck stay so (one
-        mass: from rest), and `beta_stuck_of_r`.
+        mass: from rest), and `beta_stuck_of_r`.  Where normal forces move with the structure the contacts can
+        rest from `beta` on; other motions may exist beside that, which a map from both starts shows.
 
     Raises
     ------
@@ -47,10 +48,11 @@ def stuck(system: System, band: Any, mu: float = 1.0, *, units: Units | None = N
     2.25
     """
     from ..answers import answer, boundaries_over
-    from ..limits import largest_stick, starts_matter
+    from ..limits import largest_stick, refuse_unknown_stick, starts_matter
     from ..task import checked_boundary
 
     checked, scales = checked_boundary(system, band, mu, units)
+    refuse_unknown_stick(system, "find friction that holds")
     beta, r = largest_stick(system, checked, None)
     found = {"beta": beta, "at_r": r, "mu": mu, **boundaries_over(system, checked, mu)}
     if starts_matter(system, mu):

@@ -1,0 +1,198 @@
+"""The least friction at preload, and so the least preload, from which contacts never open over a band."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...datasets.design_labels import size_label
+from ...datasets.labels import Label
+from ...errors import InputError, NoSteadyState
+from ...model.sizes import SEPARATION
+from ...model.system import System
+from ...units.scales import Units
+from .keys import BAND, BETA, MU
+from .record import Question
+from .rows import answer_rows
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..performance import PerformanceCurve
+    from ..task import Task
+
+#: Friction ratios of the search that are computed together, from the most downwards.
+_AT_ONCE = 6
+
+#: The answer is found to this share of the friction, with a bracket in this number of parts: where a
+#: motion that opens ends, the loss of normal force jumps.
+_CLOSE, _PARTS = 1e-6, 4
+
+#: Friction below the answer by less than this share is next to it.
+_NEXT = 1e-3
+
+
+def no_separation(
+    system: System, band: Any, mu: float = 1.0, *, beta: Any = None, threads: int | None = None,
+    units: Units | None = None,
+) -> "xr.Dataset":  # fmt: skip
+    """Find the least preload from which contacts never open over a band of frequencies.
+
+    A contact whose normal force moves with the structure opens where it loses all of its preload.  The loss
+    is followed in the steady motions from rest and from a large sliding motion, over the band and the
+    friction at preload; of contacts that never slip it is known that they never open.
+
+    Parameters
+    ----------
+    system, band, mu, beta, threads, units
+        As in `least_peak`; the preload of a contact is N0 = beta ratio/phi.
+
+    Returns
+    -------
+    xarray.Dataset
+        `beta`, the friction from which on contacts never open, and `at_r`, the frequency that decides;
+        `preload` N0 of the contacts (`pressed`), over P; on `peak` the largest losses of normal force over
+        the preload at `beta`; `peak_of_beta` on `beta_search`, the largest loss over friction, from the most
+        down to where a contact opens.  With units also `friction_force` and `preload_N`.
+
+    Raises
+    ------
+    InputError
+        An argument has the wrong type or is out of range; no normal force moves, or the preload is given; or
+        contacts open with the most friction that is searched.
+    NoSteadyState
+        As `least_peak`.
+    """
+    from ...checks import instance
+    from ..answers import answer
+    from ..task import checked_task
+
+    instance(system, "system", System)
+    _refuse_others(system)
+    task = checked_task(system, band, ("contact", system.dofs.numbers[0], 1), mu, beta, threads, units)
+    task = _with_losses(task)
+    curve = task.performance()
+    least = _least_friction(task, curve)
+    (peaks,) = curve.whole(np.array([least]), all_peaks=True)
+    states, table = curve.states(peaks), curve.table
+    found = {
+        "beta": least, "at_r": float(peaks.r[0]), "mu": task.mu, "limit": 1.0,
+        "peak": peaks.size, "peak_r": peaks.r, "peak_regime": states.regime, "peak_stops": states.stops,
+        "beta_search": [one.beta for one in table], "peak_of_beta": [one.largest for one in table],
+        "beta_stuck": task.stuck.beta, **_preloads(task, least),
+    }  # fmt: skip
+    asked = {"mu": task.mu, "beta": [task.low, task.high]}
+    ds = answer("no-separation", system, task.band, found, asked, task.units, task.scales)
+    return ds.assign_attrs(response="loss of normal force over the preload")
+
+
+def _refuse_others(system: System) -> None:
+    """Refuse systems in which no normal force moves, and preloads that friction does not change."""
+    groups = system.contact_system.groups
+    if all(group.normal is None for group in groups):
+        raise InputError(
+            "cannot find a preload without a contact whose normal force moves with the structure: others "
+            "never open; give contacts[1].normal"
+        )
+    for k, group in enumerate(groups, 1):
+        own = group.friction(1.0, 1.0)[0] == group.friction(0.0, 1.0)[0]
+        if group.normal is not None and own:
+            key = "normal.preload" if group.first.has_preload else "force"
+            raise InputError(
+                f"cannot find a preload with contacts[{k}].{key}: it fixes the preload; omit {key}"
+            )
+
+
+def _with_losses(task: "Task") -> "Task":
+    """The task about the loss of normal force."""
+    from ..responses import Response
+
+    return replace(task, response=Response(SEPARATION))
+
+
+def _least_friction(task: "Task", curve: "PerformanceCurve") -> float:
+    """The friction from which on no contact opens, looked for from the most friction downwards.
+
+    Raises
+    ------
+    InputError
+        A contact opens with the most friction.
+    """
+    from ..minimum import Points
+    from ..optimum import largest
+
+    beta = task.searched()
+    beta, points = beta[beta > 0.0], None  # without a preload every contact opens
+    for last in range(beta.size, 0, -_AT_ONCE):
+        part = beta[max(last - _AT_ONCE, 0) : last]
+        size = largest(curve.whole(part))
+        points = Points(part, size) if points is None else points.with_more(part, size)
+        if (size > 1.0).any():
+            break
+    assert points is not None
+    opens = np.flatnonzero(points.size > 1.0)
+    if not opens.size:
+        return float(points.beta[0])
+    k = int(opens[-1])
+    if k + 1 == points.beta.size:
+        raise InputError(
+            "beta",
+            f"must reach further: with {task.high:.6g}, the most friction that is searched, a contact opens; "
+            f"got [{task.low:.6g}, {task.high:.6g}]",
+        )
+    low, high = float(points.beta[k]), float(points.beta[k + 1])
+    while high - low > _CLOSE * high:
+        between = np.linspace(low, high, _PARTS + 1)
+        opens = np.flatnonzero(largest(curve.at(between[1:-1])) > 1.0)
+        last = int(opens[-1]) + 1 if opens.size else 0
+        low, high = float(between[last]), float(between[last + 1])
+    _refuse_unknown(curve, high)
+    return high
+
+
+def _refuse_unknown(curve: "PerformanceCurve", beta: float) -> None:
+    """Refuse an answer next to friction at which it is not known whether a contact opens."""
+    from ..optimum import describe_cells
+
+    for level, cells in curve.unknown.items():
+        known = cells.peak > 1.0 or cells.seen > 1.0
+        if not known and level >= beta * (1.0 - _NEXT):
+            raise NoSteadyState(
+                f"cannot answer: {describe_cells(level, cells)}, and whether a contact opens there is not "
+                f"known; narrow the band or the range of beta, or add damping"
+            )
+
+
+def _preloads(task: "Task", beta: float) -> dict[str, Any]:
+    """N0 of the contacts whose normal force moves."""
+    groups = task.system.contact_system.groups
+    moving = [k for k, group in enumerate(groups) if group.normal is not None]
+    preload = [groups[k].normal.preload_at(groups[k].friction(beta, 1.0)[0]) for k in moving]  # type: ignore[union-attr]
+    found: dict[str, Any] = {"pressed": np.array(moving) + 1, "preload": np.array(preload)}
+    force = task.scales.of("force")
+    return found | ({"preload_N": np.array(preload) * force} if force is not None else {})
+
+
+def _preload_rows(ds: "xr.Dataset") -> Iterator[tuple[str, str]]:
+    """The preload of every contact."""
+    if "preload" in ds:
+        for k, contact in enumerate(ds["pressed"].values.tolist()):
+            force = f" ({float(ds['preload_N'][k]):.6g} N)" if "preload_N" in ds else ""
+            yield f"preload N0 of contact {contact}", f"{float(ds['preload'][k]):.6g} P{force} or more"
+
+
+NO_SEPARATION = Question(
+    name="no-separation",
+    title="Least preload from which contacts never open",
+    function=no_separation,
+    needed=(BAND,),
+    optional=(MU, BETA),
+    rows=(answer_rows, _preload_rows),
+    panels=("performance",),
+    labels={
+        "pressed": Label(np.int64, "contact whose normal force moves, counted from 1", ("pressed",), least=1),
+        "preload": size_label("normal force at rest over P: the answer", ("pressed",)),
+        "preload_N": size_label("normal force at rest: the answer", ("pressed",), units="N"),
+    },
+)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...datasets.amounts import UP, amounts_of, band_of
 from ...datasets.design_labels import size_label
 from ...datasets.labels import Label
 from ...errors import InputError, NoSteadyState
@@ -15,6 +16,7 @@ from ...units.scales import Units
 from .keys import BAND, BETA, MU
 from .record import Question
 from .rows import answer_rows
+from .sentences import whole_sentence
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -174,6 +176,26 @@ def _preloads(task: "Task", beta: float) -> dict[str, Any]:
     return found | ({"preload_N": np.array(preload) * force} if force is not None else {})
 
 
+def _sentences(ds: "xr.Dataset") -> Iterator[str]:
+    """The preload to set."""
+    if not {"beta", "preload", "pressed"} <= set(ds.variables):
+        return
+    several = ds["pressed"].size > 1
+    preloads = ", ".join(_preload_of(ds, k) for k in range(ds["pressed"].size))
+    contacts = f"contact{'s' * several} {', '.join(map(str, ds['pressed'].values.tolist()))}"
+    friction = amounts_of(ds).friction(float(ds["beta"]), UP)
+    never = f"{'they' if several else 'it'} never open{'s' * (not several)}"
+    yield whole_sentence(
+        f"press {contacts} with {preloads} or more, a friction of {friction} at rest: {never}{band_of(ds)}"
+    )
+
+
+def _preload_of(ds: "xr.Dataset", k: int) -> str:
+    if "preload_N" in ds:
+        return f"{float(ds['preload_N'][k]):.4g} N"
+    return f"{float(ds['preload'][k]):.4g} P"
+
+
 def _preload_rows(ds: "xr.Dataset") -> Iterator[tuple[str, str]]:
     """The preload of every contact."""
     if "preload" in ds:
@@ -189,6 +211,7 @@ NO_SEPARATION = Question(
     needed=(BAND,),
     optional=(MU, BETA),
     rows=(answer_rows, _preload_rows),
+    sentences=(_sentences,),
     panels=("performance",),
     labels={
         "pressed": Label(np.int64, "contact whose normal force moves, counted from 1", ("pressed",), least=1),

@@ -22,7 +22,8 @@ def solved_of(problem: Problem, cells: Cells) -> Solved:
     """Cells of a system whose rows observed are its masses and its storeys, or none."""
     contacts = problem.moved.size
     law, presses = np.full(contacts, ELASTIC), np.zeros(contacts, dtype=bool)
-    return Solved(cells, law, presses, problem.observed.shape[0] // 2, True)
+    observed = problem.observed.shape[0]
+    return Solved(cells, law, presses, observed // 2, True, observed)
 
 
 class Ratios(NamedTuple):

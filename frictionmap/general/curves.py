@@ -16,10 +16,10 @@ from .boundaries import find_boundaries, stays_at_rest
 from .certificate import certified_beta
 from .cycle import equivalent_of, first_harmonics, harmonic_values, parts, phase_values, work_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
-from .held import held_displacements, held_ranges
-from .maps import put_offset
+from .held import held_displacements
+from .maps import solve_cells
 from .observed import wants_further
-from .outputs import allocate, is_wanted, output_values
+from .outputs import is_wanted, output_values
 from .problem import general_of, problem_of
 from .response import scalars
 from .steps import Steps, cell_steps
@@ -52,17 +52,21 @@ def _cell(system: System, steps: Steps, asked: CurveSettings) -> dict[str, np.nd
     return values
 
 
-def _stuck(system: System, asked: CurveSettings, r: float) -> dict[str, np.ndarray]:
-    """Numbers of a cell that sticks permanently: amplitudes of the held structure."""
+def _stuck(
+    system: System, asked: CurveSettings, point: tuple[float, float, float], stick: float, solver: Solver
+) -> dict[str, np.ndarray]:
+    """Numbers of a cell that sticks permanently: those of the structure held at the places that it comes to.
+
+    point, stick : mu, r and beta; beta_stick
+    """
     general = general_of(system)
-    values = {"regime": np.array(regimes.PERMANENT_STICKING), "status": np.array(regimes.RESOLVED),
+    axes = {name: np.array([value]) for name, value in zip(("mu", "r", "beta"), point, strict=True)}
+    further, r = wants_further(system, asked.quantities), axes["r"]
+    cells = solve_cells(
+        system, axes, np.array([[stick]]), solver, 1, None, None, masses=True, further=further
+    )  # fmt: skip
+    values = {"regime": np.array(regimes.PERMANENT_STICKING), "status": cells.status[0, 0, 0],
               "period": np.array(1), "contact_regime": np.zeros(general.count)}  # fmt: skip
-    cells = allocate((1, 1, 1), general.count, system.n)
-    further = wants_further(system, asked.quantities)
-    low, high = held_ranges(system, np.array([r]), further)
-    cells = cells._replace(lowest=low[np.newaxis, np.newaxis], highest=high[np.newaxis, np.newaxis])
-    put_offset(system, cells)
-    cells.contact_regime[:], cells.numbers[:] = regimes.PERMANENT_STICKING, 0.0
     values |= {
         name: output_values(name, system, cells)[0, 0, 0] for name in RECORDED if name in asked.quantities
     }
@@ -74,7 +78,7 @@ def _stuck(system: System, asked: CurveSettings, r: float) -> dict[str, np.ndarr
         for name, table in (("amplitude", moduli), ("peak_to_peak", ranges)):
             values[name] = table[general.count : general.count + system.n]
             values[f"contact_{name}"] = np.where(rigid, 0.0, table[: general.count])
-    motions = held_displacements(system, np.array([r]))
+    motions = held_displacements(system, r)
     if "first_harmonic" in asked.quantities and 1 in motions:
         first = motions[1][0]
         finite = np.isfinite(first)
@@ -125,7 +129,8 @@ def general_curves(
         try:
             proved = from_rest or (equal[m] and beta[b] <= certified)
             if proved and solver.skip == "exact" and beta[b] >= limits.beta_stick[m, i]:
-                values = _stuck(system, asked, float(r[i]))
+                point = float(mu[m]), float(r[i]), float(beta[b])
+                values = _stuck(system, asked, point, float(limits.beta_stick[m, i]), solver)
             else:
                 steps = cell_steps(system, problem, modal, i, float(beta[b]), float(mu[m]), solver, further)
                 values = _cell(system, steps, asked)

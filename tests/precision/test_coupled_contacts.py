@@ -73,10 +73,12 @@ def near_events(found, contacts):
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3, 4])
-@pytest.mark.parametrize("kind", ["still", "normal load", "belt", "free"])
+@pytest.mark.parametrize("kind", ["still", "very flexible", "normal load", "belt", "free"])
 def test_the_equations_and_the_friction_law(seed, kind):
     given = Given(seed)
-    if kind == "normal load":
+    if kind == "very flexible":  # where one begins to slip, a quarter of the others at their limits hold
+        given.residual = 6.0 * given.residual
+    elif kind == "normal load":
         given.more[0] = {"normal_load": {1: 0.4j}}
         given.more[1] = {"normal_load": {2: 0.3}}
     elif kind == "belt":

@@ -175,7 +175,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("contacts", "more", "message"), REFUSED)
-def test_what_is_refused_beside_a_bank(contacts, more, message):
+def test_what_is_refused_with_a_bank(contacts, more, message):
     with pytest.raises(fm.InputError) as error:
         fm.sweep(fm.System(contacts=contacts, **CHAIN, **more), [0.5], [0.1])
     assert message in str(error.value)

@@ -61,7 +61,14 @@ def put_friction(problem, limit, cell):
 
 @entry
 def _fill(problem, row, grid, cell, motion, memory, out, cancel):
-    """Fill the cells of one r; see `fill_cells`."""
+    """Fill the cells of one r.
+
+    Parameters
+    ----------
+    problem, row, grid, out : see `fill_cells`
+    cell, motion, memory : Cell, Motion, Memory, overwritten
+    cancel : (1,) not 0 where the rest is not wanted
+    """
     problem, row, grid, out = packed(problem), packed(row), packed(grid), packed(out)
     cell, motion, memory = packed(cell), packed(motion), packed(memory)
     for at in range(grid.limit.shape[0]):

@@ -90,7 +90,7 @@ def slipping(motion, j):
 def pass_thresholds(problem, cell, motion, j, z):
     """Put all elements whose limits are reached at a place at their limits.
 
-    Elements that begin to slip at exactly the place of one that does are among them.
+    Elements with exactly the same threshold as another of them are among them.
     """
     now, before = motion.now, motion.now.level[j]
     while has_threshold(problem, now, j):

@@ -61,7 +61,13 @@ def _record_rows(problem, motion, count, end):
 
 @kernel
 def _keep_step(problem, cell, motion, tau, length, count, end):
-    """Keep the terms of a step."""
+    """Keep the terms of a step; arguments as of `record_step`.
+
+    Parameters
+    ----------
+    problem, cell, motion : Problem, Cell, Motion
+    tau, length, count, end : see `record_step`
+    """
     record, modes, contacts = motion.record, problem.squares.size, problem.moved.size
     at = record.count[0]
     record.count[0] = at + 1
@@ -82,7 +88,14 @@ def _keep_step(problem, cell, motion, tau, length, count, end):
 
 @kernel
 def record_step(problem, cell, motion, tau, length, count, end):
-    """Record the present step of a length from its beginning at tau to x = end."""
+    """Record the present step.
+
+    Parameters
+    ----------
+    problem, cell, motion : Problem, Cell, Motion with the series of the step
+    tau, length, count : phase at its beginning, length and number of terms of the series
+    end : part x of it that is the step
+    """
     record, rows = motion.record, problem.observed.shape[0]
     _record_rows(problem, motion, count, end)
     for j in range(problem.moved.size):

@@ -103,7 +103,14 @@ def _put_rates(problem, row, cell, motion, z):
 
 @kernel
 def _expected(problem, cell, motion, j, z, w, rate):
-    """Time to the next event of a contact as its velocity and acceleration tell; infinite without one."""
+    """Time to the next event of a contact as its velocity and acceleration tell; infinite without one.
+
+    Parameters
+    ----------
+    problem, cell, motion : Problem, Cell, Motion
+    j : number of the contact
+    z, w, rate : its displacement, velocity and acceleration
+    """
     now = motion.now
     speed, rise = max(0.0, now.sense[j] * w), now.sense[j] * rate
     found = np.inf

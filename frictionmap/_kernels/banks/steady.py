@@ -27,7 +27,7 @@ from .step import put_waves
 _NEAR, _AGAIN = 0.1, 0.2
 
 #: Change in a period, over the size of the motion, and over the change in the period before, of a motion
-#: that has settled but for sliders that creep to a place at their limit.  Each slip is shorter than the one
+#: that has settled except for sliders that creep to a place at their limit.  Each slip is shorter than the one
 #: before by less and less, so that they never arrive.
 _CREEPS, _SLOW = 1e-6, 0.8
 

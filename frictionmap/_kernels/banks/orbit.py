@@ -43,6 +43,11 @@ class Memory(NamedTuple):
 
     start: State
     last: State  # of the motion followed
+    orbit: State  # found last, if `known` is not 0
+    most: np.ndarray  # (2, N) int: levels of the orbit, as of a `Motion`
+    range: np.ndarray  # (2, N) its displacements
+    radius: np.ndarray  # (1,) its multiplier
+    known: np.ndarray  # (1,) int
     matrix: np.ndarray  # (size, size)
     square: np.ndarray  # (size, size)
     right: np.ndarray  # (size,)
@@ -53,10 +58,11 @@ class Memory(NamedTuple):
 @entry
 def make_memory(problem):
     """Allocate the memory of a cell."""
-    size = 2 * problem.squares.size + MOST_MEMORIES
+    size, contacts = 2 * problem.squares.size + MOST_MEMORIES, problem.moved.size
     return Memory(
-        make_state(problem), make_state(problem), np.zeros((size, size)), np.zeros((size, size)),
-        np.zeros(size), np.zeros((2, problem.spring.size)), np.zeros(1),
+        make_state(problem), make_state(problem), make_state(problem), np.zeros((2, contacts), np.int64),
+        np.zeros((2, contacts)), np.zeros(1), np.zeros(1, np.int64), np.zeros((size, size)),
+        np.zeros((size, size)), np.zeros(size), np.zeros((2, problem.spring.size)), np.zeros(1),
     )  # fmt: skip
 
 
@@ -223,7 +229,7 @@ def find_orbit(problem, row, cell, motion, memory):
 
 
 @kernel
-def multiplier(motion, memory):
+def _multiplier(motion, memory):
     """Largest modulus of the multipliers of the orbit found last."""
     size = motion.tangent.count[0]
     for a in range(size):
@@ -268,14 +274,26 @@ def _energy(problem, row, state, other, sliders, z):
 
 
 @kernel
+def keep_orbit(motion, memory):
+    """Keep the orbit found, at whose end `motion` is."""
+    copy_state(motion.now, memory.orbit)
+    for j in range(memory.most.shape[1]):
+        for which in range(2):
+            memory.most[which, j], memory.range[which, j] = motion.most[which, j], motion.range[which, j]
+    memory.radius[0] = _multiplier(motion, memory)
+    memory.known[0] = 1
+    motion.tangent.count[0] = 0
+
+
+@kernel
 def _put_both(problem, row, cell, motion, memory):
-    """Set the sliders and displacements of the state `last` and of the orbit, at whose end `motion` is."""
-    copy_state(motion.now, memory.start)
+    """Set the sliders and displacements of the state `last` and of the orbit, and go to that."""
     for which in range(2):
-        copy_state(memory.last if which == 0 else memory.start, motion.now)
+        copy_state(memory.last if which == 0 else memory.orbit, motion.now)
         put_sliders(problem, row, cell, motion, memory.sliders[which])
         for j in range(problem.moved.size):
             motion.z[j, which] = displacement(problem, motion, j)
+            motion.most[which, j], motion.range[which, j] = memory.most[which, j], memory.range[which, j]
 
 
 @kernel
@@ -293,7 +311,7 @@ def _places_stay(problem, motion, sliders, creeps):
 
 @kernel
 def leads_there(problem, row, cell, motion, memory, creeps):
-    """Whether the motion from the state `last` goes to the orbit found, at whose end `motion` is.
+    """Whether the motion from the state `last` goes to the orbit that is kept; if so, `motion` does.
 
     It does if the sliders that rest in the orbit are where they are there, and rest on the way: their margins
     are larger than the largest |z| of a difference with the energy of the present one.  With `creeps` the
@@ -301,11 +319,12 @@ def leads_there(problem, row, cell, motion, memory, creeps):
     """
     sliders = memory.sliders
     _put_both(problem, row, cell, motion, memory)
-    if distance(memory.last, memory.start, sliders) <= _ARRIVED * state_size(row, memory.start):
+    if distance(memory.last, memory.orbit, sliders) <= _ARRIVED * state_size(row, memory.orbit):
         return True
     if not _places_stay(problem, motion, sliders, creeps):
+        memory.known[0] = 0
         return False
-    energy = _energy(problem, row, memory.last, memory.start, sliders, motion.z)
+    energy = _energy(problem, row, memory.last, memory.orbit, sliders, motion.z)
     for j in range(problem.moved.size):
         # the springs of sliders that rest are part of the energy
         rest = problem.left[problem.first[j] + j + slipping(motion, j)]

@@ -15,8 +15,8 @@ from .orbit import (
     copy_state,
     find_orbit,
     go_round,
+    keep_orbit,
     leads_there,
-    multiplier,
     state_size,
 )
 from .record import clear_record
@@ -27,8 +27,8 @@ from .step import put_waves
 _NEAR, _AGAIN = 0.1, 0.2
 
 #: Change in a period, over the size of the motion, and over the change in the period before, of a motion
-#: that has settled except for sliders that creep to a place at their limit.  Each slip is shorter than the one
-#: before by less and less, so that they never arrive.
+#: that has settled except for sliders that creep to a place at their limit.  Each slip is shorter than the
+#: one before by less and less, so that they never arrive.
 _CREEPS, _SLOW = 1e-6, 0.8
 
 #: Periods between attempts while sliders creep.
@@ -78,10 +78,29 @@ def _put_record(problem, row, cell, motion, memory):
 
 
 @kernel
-def _try_orbit(problem, row, cell, motion, memory, creeps):
-    """Look for the orbit to which the motion goes from the state `last`; whether it was found."""
-    found = find_orbit(problem, row, cell, motion, memory)
-    return found and leads_there(problem, row, cell, motion, memory, creeps)
+def _arrives(problem, row, cell, motion, memory, search, creeps):
+    """Whether the motion from its state, kept as `last`, goes to an orbit that is known, or is found.
+
+    If so, `motion` is there.
+
+    Parameters
+    ----------
+    problem, row, cell, motion, memory : Problem, Row, Cell, Motion, Memory
+    search : whether an orbit is looked for, if none is known
+    creeps : see `leads_there`
+    """
+    copy_state(motion.now, memory.last)
+    if memory.known[0] != 0 and leads_there(problem, row, cell, motion, memory, creeps):
+        return True
+    copy_state(memory.last, motion.now)
+    if memory.known[0] == 0 and search:
+        if find_orbit(problem, row, cell, motion, memory):
+            keep_orbit(motion, memory)
+            if leads_there(problem, row, cell, motion, memory, creeps):
+                return True
+        motion.tangent.count[0] = 0
+        copy_state(memory.last, motion.now)
+    return False
 
 
 @kernel
@@ -99,24 +118,22 @@ def find_steady(problem, row, cell, motion, memory, grid):
     Found
     """
     near, before, code = _NEAR, np.inf, _begin(problem, row, cell, motion, grid)
+    memory.known[0] = 0
     for cycle in range(grid.cycles):
         if code != FOLLOWED:
             return Found(regimes.TOO_MANY_EVENTS, cycle, np.nan)
         code = go_round(problem, row, cell, motion, memory)
         size, off = state_size(row, motion.now), memory.off[0]
         creeps, before = off <= _CREEPS * size and off > _SLOW * before, off
-        again = creeps and cycle % _EVERY == 0  # it hardly comes nearer
-        if code != FOLLOWED or (off > near * size and not again):
+        if code != FOLLOWED:
             continue
-        near = _AGAIN * off / size
-        copy_state(motion.now, memory.last)
-        found = _try_orbit(problem, row, cell, motion, memory, creeps)
-        radius = multiplier(motion, memory) if found else np.nan
-        motion.tangent.count[0] = 0
-        if not found:
-            copy_state(memory.last, motion.now)
+        # sliders that creep hardly come nearer
+        search = off <= near * size or (creeps and cycle % _EVERY == 0)
+        near = min(near, _AGAIN * off / size) if search else near
+        found = _arrives(problem, row, cell, motion, memory, search, creeps)
         if found or off <= _STILL * size:
+            copy_state(motion.now, memory.last)
             if _put_record(problem, row, cell, motion, memory) == FOLLOWED:
-                return Found(regimes.RESOLVED, cycle + 1, radius)
+                return Found(regimes.RESOLVED, cycle + 1, memory.radius[0] if found else np.nan)
             copy_state(memory.last, motion.now)
     return Found(regimes.NOT_REACHED, grid.cycles, np.nan)

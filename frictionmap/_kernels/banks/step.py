@@ -10,6 +10,7 @@ import numpy as np
 
 from ..compiler import kernel
 from ..general.crossings import NONE, first_zero
+from ..general.problem import INVERSE as _INVERSE
 from ..general.problem import TERMS, WIDTH
 from ..general.problem import TURN as LARGEST
 from .level import NOTHING, TURN, YIELD, has_threshold, threshold
@@ -157,20 +158,42 @@ def choose_length(problem, row, cell, motion, rest):
 
 
 @kernel
-def _put_contact_term(problem, motion, k):
-    """Set term k of the displacements in the contacts."""
-    modes = problem.squares.size
-    for j in range(problem.moved.size):
-        total = -problem.moved[j] * motion.loads[k, modes]
-        for i in range(modes):
-            total += problem.chi[j, i] * motion.moves[k, i]
-        motion.z[j, k] = total
+def put_term(problem, moves, k, scale, damped):
+    """Begin term k + 2 of the modes, in `moves` (LONG, m): what stiffness and damping give."""
+    squares, damping, modes = problem.squares, problem.damping, moves.shape[1]
+    for i in range(modes):
+        total = moves[k + 2, i] - scale * squares[i] * moves[k, i]
+        if problem.coupled:
+            for n in range(modes):
+                total -= damped * (k + 1.0) * damping[i, n] * moves[k + 1, n]
+        else:
+            total -= damped * (k + 1.0) * damping[i, i] * moves[k + 1, i]
+        moves[k + 2, i] = total
+
+
+@kernel
+def end_term(problem, moves, k, j, pull):
+    """Add a force, times the scale of a step, to term k + 2 of the modes."""
+    chi = problem.chi
+    for i in range(moves.shape[1]):
+        moves[k + 2, i] -= chi[j, i] * pull
+
+
+@kernel
+def _displaced(problem, motion, j, k):
+    """Term k of the displacement in a contact."""
+    moves, chi, modes = motion.moves, problem.chi, problem.squares.size
+    total = 0.0
+    for i in range(modes):
+        total += chi[j, i] * moves[k, i]
+    return total - problem.moved[j] * motion.loads[k, modes]
 
 
 @kernel
 def put_series(problem, row, cell, motion, length, angle):
     """Fill the series of a step of this length; return the number of terms of a displacement."""
-    now, modes, moves = motion.now, problem.squares.size, motion.moves
+    now, moves, z, loads = motion.now, motion.moves, motion.z, motion.loads
+    modes, contacts = problem.squares.size, problem.moved.size
     part = min(int(angle / LARGEST * _PARTS), _PARTS - 1)
     count = _COUNTS[part] + 2
     scale, damped = length * length / (row.r * row.r), length / row.r
@@ -178,30 +201,32 @@ def put_series(problem, row, cell, motion, length, angle):
     for i in range(modes):
         moves[0, i], moves[1, i] = now.q[i], length * now.p[i]
     for k in range(count - 2):
-        _put_contact_term(problem, motion, k)
         for i in range(modes):
-            total = motion.loads[k, i] - scale * problem.squares[i] * moves[k, i]
-            if problem.coupled:
-                for n in range(modes):
-                    total -= damped * (k + 1.0) * problem.damping[i, n] * moves[k + 1, n]
-            else:
-                total -= damped * (k + 1.0) * problem.damping[i, i] * moves[k + 1, i]
-            moves[k + 2, i] = total
-        for j in range(problem.moved.size):
-            at = problem.first[j] + j + now.level[j]
-            force = problem.left[at] * motion.z[j, k]
+            moves[k + 2, i] = loads[k, i]
+        put_term(problem, moves, k, scale, damped)
+        for j in range(contacts):
+            z[j, k] = _displaced(problem, motion, j, k)
+            force = problem.left[problem.first[j] + j + now.level[j]] * z[j, k]
             if k == 0:
-                force = friction(problem, cell, motion, j, motion.z[j, 0])
-            for i in range(modes):
-                moves[k + 2, i] -= scale * problem.chi[j, i] * force
+                force = friction(problem, cell, motion, j, z[j, 0])
+            end_term(problem, moves, k, j, scale * force)
         for i in range(modes):
-            moves[k + 2, i] /= (k + 1.0) * (k + 2.0)
-    _put_contact_term(problem, motion, count - 2)
-    _put_contact_term(problem, motion, count - 1)
-    for j in range(problem.moved.size):
+            moves[k + 2, i] *= _INVERSE[k]
+    for j in range(contacts):
+        for k in range(count - 2, count):
+            z[j, k] = _displaced(problem, motion, j, k)
         for k in range(count, WIDTH):
-            motion.z[j, k] = 0.0
+            z[j, k] = 0.0
     return count
+
+
+@kernel
+def _keeps_sense(z, j, sense, count):
+    """Whether the sizes of the terms show that the velocity in a contact keeps its sense in the step."""
+    least = sense * z[j, 1]
+    for k in range(2, count):
+        least -= k * abs(z[j, k])
+    return least > 0.0
 
 
 @kernel
@@ -213,15 +238,14 @@ def _first_turn(motion, j, count):
         skipped = 1
         while skipped < TERMS - 1 and z[j, skipped + 1] == 0.0:
             skipped += 1
+    elif _keeps_sense(z, j, sense, count):
+        return NONE
     for k in range(WIDTH):
         at = k + skipped
         watch[0, k] = sense * (at + 1.0) * z[j, at + 1] if at < TERMS else 0.0
     if watch[0, 0] < 0.0 or (watch[0, 0] == 0.0 and watch[0, 1] <= 0.0):
         return NONE if motion.now.lead[j] != 0 and watch[0, 0] == 0.0 else 0.0
-    least = watch[0, 0]
-    for k in range(1, count):
-        least -= abs(watch[0, k])
-    return NONE if least > 0.0 else first_zero(watch, 0)
+    return first_zero(watch, 0)
 
 
 @kernel

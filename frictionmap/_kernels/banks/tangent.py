@@ -6,7 +6,9 @@ they follow the place of the turn.
 """
 
 from ..compiler import kernel
+from ..general.problem import INVERSE
 from .problem import MOST_MEMORIES
+from .step import end_term, put_term
 
 
 @kernel
@@ -51,30 +53,24 @@ def begin_tangent(problem, motion):
 @kernel
 def _put_column(problem, row, motion, c, count, length):
     """Fill the series of one column over the present step."""
-    modes, column, tangent = problem.squares.size, motion.column, motion.tangent
+    modes, column, tangent, chi = problem.squares.size, motion.column, motion.tangent, problem.chi
     scale, damped = length * length / (row.r * row.r), length / row.r
     for i in range(modes):
         column[0, i], column[1, i] = tangent.q[i, c], length * tangent.p[i, c]
     for k in range(count - 2):
         for i in range(modes):
-            total = -scale * problem.squares[i] * column[k, i]
-            if problem.coupled:
-                for n in range(modes):
-                    total -= damped * (k + 1.0) * problem.damping[i, n] * column[k + 1, n]
-            else:
-                total -= damped * (k + 1.0) * problem.damping[i, i] * column[k + 1, i]
-            column[k + 2, i] = total
+            column[k + 2, i] = 0.0
+        put_term(problem, column, k, scale, damped)
         for j in range(problem.moved.size):
             z = 0.0
             for i in range(modes):
-                z += problem.chi[j, i] * column[k, i]
+                z += chi[j, i] * column[k, i]
             force = problem.left[problem.first[j] + j + motion.now.level[j]] * z
             if k == 0:
                 force -= tangent.pull[j, c]
-            for i in range(modes):
-                column[k + 2, i] -= scale * problem.chi[j, i] * force
+            end_term(problem, column, k, j, scale * force)
         for i in range(modes):
-            column[k + 2, i] /= (k + 1.0) * (k + 2.0)
+            column[k + 2, i] *= INVERSE[k]
 
 
 @kernel

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._kernels.general.fill import NUMBERS, Cells
-from .._kernels.general.problem import Problem
+from .._kernels.general.problem import TURN, Problem, Turn
 from ..model.general import ContactSystem, rank_of
 from ..model.modes import solve_modes
 from ..model.system import System
@@ -38,10 +38,12 @@ class Ring(NamedTuple):
     """How a structure repeats."""
 
     sectors: int  # N
+    order: int  # k
     kept: int  # s
     sign: float  # of x_{j+s}/x_j
     contacts: np.ndarray  # (N contacts,) int: the one, of those kept, that each moves as
     signs: np.ndarray  # (N contacts,) with this sign
+    onward: list[tuple[int, float]]  # where each contact is found after a turn by one sector, and its sign
 
 
 def _is_equal(found: np.ndarray, given: np.ndarray) -> bool:
@@ -82,6 +84,15 @@ def _next_contacts(general: ContactSystem, dofs: int) -> list[tuple[int, float]]
             return None
         found.append(alike[0])
     return found
+
+
+def _turned_by(onward: list[tuple[int, float]], contact: int, sectors: int) -> tuple[int, float]:
+    """Where a contact is found after a turn by some sectors, and its sign there."""
+    sign = 1.0
+    for _ in range(sectors):
+        contact, own = onward[contact]
+        sign *= own
+    return contact, sign
 
 
 def _kept_sectors(general: ContactSystem, sectors: int, k: int) -> tuple[int, float]:
@@ -125,10 +136,14 @@ def find_ring(system: System) -> Ring | None:
         if k is None:
             continue
         kept, sign = _kept_sectors(general, sectors, k)
-        onward = _next_contacts(general, kept * dofs)
-        found = None if onward is None or kept == sectors else _orbits(onward, sign)
-        if found is not None:
-            return Ring(sectors, kept, sign, *found)
+        onward = _next_contacts(general, dofs)
+        found = (
+            None
+            if onward is None
+            else _orbits([_turned_by(onward, j, kept) for j in range(len(onward))], sign)
+        )
+        if found is not None and onward is not None:
+            return Ring(sectors, k, kept, sign, *found, onward)
     return None
 
 
@@ -195,6 +210,33 @@ def _kept(system: System, full: Problem, ring: Ring) -> Kept:
     return Kept(ring, modal, contacts, mix, problem)
 
 
+def _with_parts(problem: Problem, kept: Kept) -> Problem:
+    """The problem with the map over a part of half a period, where half periods mirror each other.
+
+    x_{j+1}(tau) = x_j(tau + t), and t is q parts.  After a turn by the a sectors with a q = 1 + b s the
+    motion is that of a part later, mirrored b times.
+    """
+    ring, phi = kept.ring, kept.modal.phi
+    count, dofs = ring.kept, len(phi) // ring.sectors
+    if not problem.symmetric or count == 1:
+        return problem
+    q = 2 * ring.order * count // ring.sectors
+    turn = pow(q, -1, count)
+    sign = ring.sign * (-1.0) ** (
+        (turn * q - 1) // count
+    )  # a turn back by a is one on by s - a, with its sign
+    onward = [_turned_by(ring.onward, j, count - turn) for j in kept.contacts]
+    back = np.roll(phi, -(count - turn) * dofs, axis=0)
+    modes = sign * (ring.kept / ring.sectors) * (phi.T @ kept.modal.mass @ back)
+    modes[np.abs(modes) <= _EQUAL] = 0.0
+    at = np.searchsorted(kept.contacts, ring.contacts[[other for other, _ in onward]])
+    signs = sign * np.array([own for _, own in onward]) * ring.signs[[other for other, _ in onward]]
+    # each part is a whole number of intervals; rates in the middle of those that have this number
+    intervals = np.ceil(np.ceil(problem.rates * (math.pi / TURN)) / count) * count
+    rates = (intervals - 0.5) * (TURN / math.pi)
+    return problem._replace(parts=count, turn=Turn(modes, at, signs), rates=rates)
+
+
 def keep_sectors(system: System, full: Problem, starts: np.ndarray) -> tuple[Kept, np.ndarray] | None:
     """The sectors that differ, and their initial states; None without a ring, or where these do not repeat.
 
@@ -213,6 +255,7 @@ def keep_sectors(system: System, full: Problem, starts: np.ndarray) -> tuple[Kep
     if not _is_equal(kept.modal.phi @ own, places):
         return None
     phase = np.repeat(starts[:, 2:, :1], own.shape[1], axis=2)
+    kept = kept._replace(problem=_with_parts(kept.problem, kept))
     return kept, np.concatenate((own.swapaxes(1, 2), phase), axis=1)
 
 

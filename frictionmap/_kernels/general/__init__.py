@@ -23,6 +23,7 @@ tangent        derivatives of the motion by its state at the section
 glide          intervals in which nothing happens, by tables
 follow         the motion from one phase of the load to another
 return_map     the state after some half periods, and Newton steps to one that returns
+parts          rings whose sectors move alike: the state after a part of half a period
 recurrence     recurrence detection: the last states at the section, and a return to one of them
 orbits         steady states by Newton's method, their multipliers and periods
 creep          contacts that slide ever less, and in the end rest

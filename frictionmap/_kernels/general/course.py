@@ -140,7 +140,10 @@ def follow_cycle(problem, friction, followed, workspace):
     record.active[0] = RANGES
     for half in range(2):
         if code == FOLLOWED:
-            code = follow(problem, row, friction, half, motion, memory.box, counts, record, False)
+            code = follow(
+                problem, row, friction, half * row.intervals[0], row.intervals[0], motion, memory.box, counts,
+                record, False,
+            )  # fmt: skip
             if half == 1:
                 take_state(motion, memory.start, memory.senses, 1.0)
                 forget_places(problem, memory.start)

@@ -360,7 +360,7 @@ def _solve_cell(problem, grid, m, i, b, friction, workspace, trail):
         found, halves, multiplier = solve_from(
             problem, friction, state, grid.cycles, grid.tolerance, workspace, RANGES, True
         )
-        if found.status == REPEATS and multiplier < _ISOLATED:
+        if found.status == REPEATS and not multiplier >= _ISOLATED:
             return found, halves, multiplier
         _set_friction(grid, m, i, b, friction)
     from_rest(problem, row, friction, state, workspace.motion, memory, workspace.record, NOTHING)

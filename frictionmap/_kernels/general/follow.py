@@ -268,13 +268,13 @@ def forget_tables(problem, row, friction):
 
 
 @kernel
-def follow(problem, row, friction, part, motion, box, counts, record, derive):
-    """Follow the motion for half a period of the load.
+def follow(problem, row, friction, first, count, motion, box, counts, record, derive):
+    """Follow the motion through some intervals of the load.
 
     Parameters
     ----------
     problem, row, friction : Problem, Row, Friction
-    part : 0 or 1: the half period that begins at the section, or the one after it
+    first, count : the first interval, from the section on, and how many
     motion : Motion; state and pattern become those at the end, and `tangent` is multiplied if `derive`
     box : (BOX_ROWS, N) scratch
     counts : (COUNT_ROWS, N) counters, increased
@@ -288,10 +288,9 @@ def follow(problem, row, friction, part, motion, box, counts, record, derive):
     h = row.numbers[H]
     if not prepare(problem, row, friction, motion):
         return UNDETERMINED
-    intervals = row.intervals[0]
     # a state that Newton's method or other states led to, with their errors
-    set_channels(problem, row, SECTION + part * intervals * h, part * intervals, motion)
-    if not prepare_loops(problem, row, friction, SECTION + part * intervals * h, motion, box):
+    set_channels(problem, row, SECTION + first * h, first, motion)
+    if not prepare_loops(problem, row, friction, SECTION + first * h, motion, box):
         return UNDETERMINED
     stop_exactly(problem, row, motion)
     set_segments(problem, row, motion)
@@ -299,8 +298,7 @@ def follow(problem, row, friction, part, motion, box, counts, record, derive):
     if derive:
         hold_tangent(problem, row, motion)
     glides = record.active[0] == 0 and can_glide(problem, row)
-    for k in range(intervals):
-        interval = part * intervals + k
+    for interval in range(first, first + count):
         if glides and glide(problem, row, friction, interval, motion):
             count_time(motion, counts, h)
             if derive:

@@ -31,13 +31,13 @@ from .pattern import (
     PARTICIPATES,
     TERMS_SIZE,
     UPPER,
+    WHOLE,
     fill_free_accelerations,
-    is_still,
     settle,
     stop_exactly,
     take_part,
 )
-from .problem import F, force_row, slide_velocity
+from .problem import F, P, Q, force_row, slide_velocity
 from .row import set_channels
 from .series import factor_held, solve_held
 
@@ -121,13 +121,44 @@ def _step(row, motion, box):
 
 
 @kernel
+def _fill_whole(problem, row, motion, box, rates):
+    """Fill the size of the terms of the accelerations of all modes, as they move each contact: a contact that
+    does not move has the rounding errors of these.
+
+    Parameters
+    ----------
+    problem, row, motion : Problem, Row, Motion
+    box : scratch of `settle`, with the limits of the forces, or in HOLDING the rates of the forces
+    rates : whether the accelerations are those by rates of the forces alone
+    """
+    modes, channels = problem.push.shape
+    contacts, whole = motion.sense.size, 0.0
+    for m in range(modes):
+        size = 0.0
+        if not rates:
+            size = abs(row.stiffness[m] * motion.state[Q, m])
+            for other in range(modes):
+                size += abs(row.damping[m, other] * motion.state[P, other])
+            for d in range(channels):
+                size += abs(row.push[d, m] * motion.series[modes + d, 0])
+        for j in range(contacts):
+            size += abs(row.reaction[j, m] * (box[HOLDING, j] if rates else box[UPPER, j]))
+        whole += size * size
+    for j in range(contacts):
+        own = 0.0
+        for m in range(modes):
+            own += problem.chi[j, m] ** 2
+        box[WHOLE, j] = math.sqrt(own * whole)
+
+
+@kernel
 def _fill_accelerations(row, motion, box):
     """Fill ACCELERATION of the participants, and the size of its terms."""
     contacts = motion.sense.size
     for j in range(contacts):
         if box[PARTICIPATES, j] == 0.0:
             continue
-        box[ACCELERATION, j], box[TERMS_SIZE, j] = box[FREE, j], abs(box[FREE, j])
+        box[ACCELERATION, j], box[TERMS_SIZE, j] = box[FREE, j], max(abs(box[FREE, j]), box[WHOLE, j])
         for other in range(contacts):
             if box[PARTICIPATES, other] != 0.0:
                 part = row.mobility[j, other] * box[FORCE, other]
@@ -202,6 +233,20 @@ def _release_accelerated(problem, row, motion, box, zeros):
 
 
 @kernel
+def _is_still(problem, row, motion, j):
+    """Whether the velocity in a contact is zero, up to rounding errors.
+
+    Where a loop comes to rest all modes that move its contacts do: what is left of their velocities is
+    rounding error of the whole motion.
+    """
+    own, whole = 0.0, 0.0
+    for m in range(problem.push.shape[0]):
+        own += problem.chi[j, m] ** 2
+        whole += motion.state[Q, m] ** 2 + motion.state[P, m] ** 2
+    return abs(slide_velocity(problem, row, motion, j)) <= TOGETHER * math.sqrt(own * whole)
+
+
+@kernel
 def _settle_loops(problem, row, friction, tau, motion, box, forces, arrived):
     """`settle` for contacts that may close loops.
 
@@ -213,7 +258,7 @@ def _settle_loops(problem, row, friction, tau, motion, box, forces, arrived):
     contacts = motion.sense.size
     take_part(problem, row, friction, tau, motion, box)
     for j in range(contacts):
-        if motion.sense[j] == 0 or j == arrived or is_still(problem, row, motion, j):
+        if motion.sense[j] == 0 or j == arrived or _is_still(problem, row, motion, j):
             box[PARTICIPATES, j] = 1.0  # sliders that close a loop with held contacts arrive together
     fill_free_accelerations(problem, row, motion, box)
     for j in range(contacts):
@@ -222,6 +267,7 @@ def _settle_loops(problem, row, friction, tau, motion, box, forces, arrived):
         if box[PARTICIPATES, j] != 0.0:
             motion.sense[j] = 0
             box[FORCE, j] = min(max(forces[j], -limit), limit)
+    _fill_whole(problem, row, motion, box, False)
     if not factor_independent(problem, row, motion):
         return False
     stop_exactly(problem, row, motion)
@@ -282,6 +328,7 @@ def release_in_loops(problem, row, friction, motion, forces, x, box):
         box[FREE, j] = 0.0
         for other in range(contacts):
             box[FREE, j] += row.mobility[j, other] * box[HOLDING, other]
+    _fill_whole(problem, row, motion, box, True)
     if not _find_forces(problem, row, motion, box):
         return False
     for j in range(contacts):

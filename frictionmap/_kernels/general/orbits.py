@@ -9,6 +9,7 @@ from ..structure.newton import solve_linear
 from .counts import MOVED
 from .follow import FOLLOWED
 from .laws.kinds import state_size
+from .parts import go_on, go_part
 from .problem import SIZE, is_carried
 from .return_map import (
     fill_newton,
@@ -93,6 +94,28 @@ def largest_multiplier(problem, row, halves, precision, motion, memory):
 
 
 @kernel
+def improve_by_part(problem, row, friction, motion, memory, record):
+    """Take one Newton step on the map over a part of half a period, see `parts`; its size, the error of the
+    state before it, over the size of the motion.
+    """
+    if go_part(problem, row, friction, motion, memory, record, True) != FOLLOWED:
+        return math.inf
+    fill_newton(problem, row, 1, motion, memory)
+    if not solve_linear(memory.matrix, memory.right, state_size(problem)):
+        return math.inf
+    return take_step(problem, row, memory)
+
+
+@kernel
+def any_rests(counts):
+    """Whether any contact did not move on the last way."""
+    rests = False
+    for j in range(counts.shape[1]):
+        rests = rests or counts[MOVED, j] == 0.0
+    return rests
+
+
+@kernel
 def drifts(problem, counts, halves, j):
     """Whether a contact slid, on the last way, in one direction where it must come back: at a wall at rest,
     and with springs that bring it back.
@@ -134,8 +157,8 @@ def newton(problem, row, friction, halves, tolerance, motion, memory, record):
     contacts = problem.spring.size
     strays = contacts // _STRAYS if contacts >= 2 * _STRAYS else 0
     for _ in range(_MOST_STEPS):
-        code = go_round(problem, row, friction, halves, motion, memory, record, True)
-        cycles += 0.5 * halves
+        code, followed = go_on(problem, row, friction, halves, motion, memory, record, True)
+        cycles += 0.5 * followed
         if code != FOLLOWED:
             return NO_REPEAT, cycles
         drifting = any_drifts(problem, memory.counts, halves)

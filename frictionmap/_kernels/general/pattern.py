@@ -35,12 +35,12 @@ _MOST_BLOCKS, _MOST_PIVOTS = 100, 2000
 #: and accelerations of the participants; 1 for those that take part; kinetic friction; 1 for those that may
 #: slide; static friction; forces that would hold all participants; 1 where a contact would do otherwise if
 #: all overloaded ones were released at once; sense; the only side of its range that a force can leave, or 0;
-#: size of the terms of ACCELERATION; limits of a force, see `loops`.
+#: size of the terms of ACCELERATION; limits of a force, and size of the terms of all modes, see `loops`.
 (
     FREE, FORCE, ACCELERATION, PARTICIPATES, KINETIC, MAY_SLIDE, STATIC, HOLDING, ORDER_MATTERS, _SENSE,
-    _SIDE, TERMS_SIZE, LOWER, UPPER,
-) = range(14)  # fmt: skip
-BOX_ROWS = 14
+    _SIDE, TERMS_SIZE, LOWER, UPPER, WHOLE,
+) = range(15)  # fmt: skip
+BOX_ROWS = 15
 
 
 @kernel

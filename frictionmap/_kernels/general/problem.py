@@ -85,6 +85,18 @@ class Coupling(NamedTuple):
 UNCOUPLED = Coupling(np.zeros((0, 0)), np.zeros(0))
 
 
+class Turn(NamedTuple):
+    """How sectors of a ring follow each other in a steady state, see `parts`."""
+
+    modes: np.ndarray  # (m, m) T: q(tau) = T q(tau + pi/parts)
+    contacts: np.ndarray  # (N,) int: the contact from whose motion that of each follows
+    signs: np.ndarray  # (N,) with this sign
+
+
+#: No sectors.
+ALONE = Turn(np.zeros((0, 0)), np.zeros(0, np.int64), np.zeros(0))
+
+
 class Problem(NamedTuple):
     """A system over r; m modes, N contacts, D channels, H harmonics."""
 
@@ -107,6 +119,8 @@ class Problem(NamedTuple):
     law: Law = FLAT
     loops: bool = False  # whether rigid contacts close loops
     coupling: Coupling = UNCOUPLED
+    parts: int = 1  # of half a period, after each of which the motion is the same in the next sector
+    turn: Turn = ALONE
 
 
 class Parts(NamedTuple):

@@ -145,10 +145,13 @@ def go_round(problem, row, friction, halves, motion, memory, record, derive):
         memory.counts[LAST_SENSE, j] = memory.counts[FIRST_SENSE, j] = memory.senses[j]
     if derive:
         identity(problem, motion)
-    code = FOLLOWED
+    code, count = FOLLOWED, row.intervals[0]
     for half in range(halves):
         if code == FOLLOWED:
-            code = follow(problem, row, friction, half % 2, motion, memory.box, memory.counts, record, derive)
+            code = follow(
+                problem, row, friction, half % 2 * count, count, motion, memory.box, memory.counts, record,
+                derive,
+            )  # fmt: skip
     sign = -1.0 if halves % 2 == 1 else 1.0
     for j in range(motion.sense.size):  # the first slip follows the last one of the time before
         if memory.counts[FIRST_SENSE, j] * (sign * memory.counts[LAST_SENSE, j]) < 0.0:

@@ -35,9 +35,12 @@ from .orbits import (
     RETURNED,
     Steady,
     any_drifts,
+    any_rests,
+    improve_by_part,
     largest_multiplier,
     newton,
 )
+from .parts import has_parts
 from .places import (
     Places,
     fill_flexibility,
@@ -311,25 +314,31 @@ def measure(problem, friction, halves, workspace, what):
     Returns
     -------
     (followed, multiplier) : half periods followed, 0 where the motion could not be; the largest modulus of
-        the multipliers over the steady period, NaN where NOTHING is kept
+        the multipliers over the steady period, NaN where NOTHING is kept, or parts of half a period tell the
+        error of the state
     """
     row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     both = halves if halves % 2 == 0 or what == NOTHING or what == RANGES else 2 * halves
+    root = has_parts(problem, both) and what != NOTHING
     multiplier = math.nan
     found = False
     for count in range(1, _MOST_MEASURED + 1):
+        off = improve_by_part(problem, row, friction, motion, memory, record) if root else 0.0
         clear_record(record)
         record.active[0] = what
-        code = go_round(problem, row, friction, both, motion, memory, record, what != NOTHING)
+        code = go_round(problem, row, friction, both, motion, memory, record, what != NOTHING and not root)
         record.active[0] = NOTHING
         if code != FOLLOWED:
             return 0, math.nan
+        if root and any_rests(memory.counts):
+            root = False
+            continue
         most = MEASURED
-        if what != NOTHING:
+        if what != NOTHING and not root:
             multiplier = largest_multiplier(problem, row, both, 0.0, motion, memory)
             most *= min(1.0, abs(1.0 - multiplier))
         enough = most if count < _MOST_REPEATED else max(most, RETURNED)
-        returns = return_distance(problem, row, memory) <= enough
+        returns = max(return_distance(problem, row, memory), off) <= enough
         found = returns and not any_drifts(problem, memory.counts, both)
         if found:
             break

@@ -81,7 +81,12 @@ def _move_alike(problem, counts):
 
 @kernel
 def go_part(problem, row, friction, motion, memory, record, derive):
-    """`go_round` over a part of half a period; its derivatives get the sign of half a period."""
+    """`go_round` over a part of half a period; its derivatives get the sign of half a period.
+
+    Parameters
+    ----------
+    problem, row, friction, motion, memory, record, derive : see `go_round`
+    """
     put_state(memory.start, memory.senses, motion)
     for part in range(memory.counts.shape[0]):
         for j in range(motion.sense.size):
@@ -102,7 +107,16 @@ def go_part(problem, row, friction, motion, memory, record, derive):
 
 @kernel
 def go_on(problem, row, friction, halves, motion, memory, record, derive):
-    """`go_round`, or `go_part` where the map over these half periods has a root; the code, half periods."""
+    """`go_round`, or `go_part` where the map over these half periods has a root.
+
+    Parameters
+    ----------
+    problem, row, friction, halves, motion, memory, record, derive : see `go_round`
+
+    Returns
+    -------
+    (code, halves) : code of `follow`; half periods followed
+    """
     if has_parts(problem, halves):
         return go_part(problem, row, friction, motion, memory, record, derive), 1.0 / problem.parts
     return go_round(problem, row, friction, halves, motion, memory, record, derive), float(halves)

@@ -236,8 +236,8 @@ def _release_accelerated(problem, row, motion, box, zeros):
 def _is_still(problem, row, motion, j):
     """Whether the velocity in a contact is zero, up to rounding errors.
 
-    Where a loop comes to rest all modes that move its contacts do: what is left of their velocities is
-    rounding error of the whole motion.
+    Where a loop comes to rest all modes that move its contacts do: their velocities are then rounding errors
+    of the whole motion.
     """
     own, whole = 0.0, 0.0
     for m in range(problem.push.shape[0]):

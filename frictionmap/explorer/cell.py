@@ -20,6 +20,9 @@ from .queries import PAGE, Query, needed
 from .sentences import describe_motion
 from .views import Follower, View
 
+#: State of an open contact, beside its directions.
+_OPEN = 2
+
 #: Samples per excitation period: a curve a few hundred pixels wide is smooth with them.
 _SAMPLES = 400
 
@@ -112,7 +115,7 @@ def curves_of(view: View, values: Mapping[str, np.ndarray]) -> dict[str, np.ndar
     return {
         **{name: table.astype(np.float32) for name, table in drawn.items()},
         **drawing_curves(system, tau, k),
-        "states": direction.astype(np.int8),
+        "states": np.where(values.get("open", np.zeros_like(direction)) == 1, _OPEN, direction).astype(np.int8),
         "direction": np.ascontiguousarray(direction if k is None else direction[k]).astype(np.int8),
     }
 

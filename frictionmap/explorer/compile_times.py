@@ -44,6 +44,15 @@ _BENCHMARK = {
         "quantity": Compilation(2.1, 4),
         "goal": Compilation(25.0, 236),
     },
+    "phases": {
+        "lines": Compilation(0.5, 2),
+        "map": Compilation(40.0, 150),
+        "motion": Compilation(5.0, 20),
+        "others": Compilation(1.0, 2),
+        "cut": Compilation(1.0, 2),
+        "quantity": Compilation(1.0, 2),
+        "goal": Compilation(26.0, 145),
+    },
     "general": {
         "lines": Compilation(16.0, 135),
         "map": Compilation(18.0, 139),

@@ -13,6 +13,8 @@ def lines_of(view: View) -> tuple[Line, ...]:
     """The boundaries that a view has."""
     elastic, k = view.system.contact_system.elastic, view.shown
     held = ", the others held" if elastic.size > 1 else ""
+    if view.system.contact_system.has_phases:
+        return _of_opening(view)
     if k is not None and elastic[k]:
         return (_no_slip(f"the contact never slips{held}", _DASHED),)
     stick = _stick(view, "all contacts can stay stuck" if k is None else f"the contact can stay stuck{held}")
@@ -24,6 +26,16 @@ def lines_of(view: View) -> tuple[Line, ...]:
         return stick
     who = "no contact stops" if elastic.size > 1 else "continuous sliding is possible"
     return (Line(("beta_lim",), "lim", (), f"below: {who}"), *stick, *_further(view))
+
+
+def _of_opening(view: View) -> tuple[Line, ...]:
+    """The friction at preload from which the only contact, whose normal force moves, never slides."""
+    general = view.system.contact_system
+    if general.count > 1 or general.springs:
+        return ()
+    if general.elastic.all():
+        return (_no_slip("the contact never slips", _DASHED),)
+    return _stick(view, "the contact can stay stuck")
 
 
 def _no_slip(meaning: str, dashes: tuple[int, ...]) -> Line:

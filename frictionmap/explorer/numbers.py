@@ -32,6 +32,10 @@ _OF_CONTACT = (
     Number("slips_per_cycle", "slips per cycle"),
     Number("slip_reversals_per_cycle", "slip reversals per cycle"),
     Number("elastic_fraction", "share of time without slip", "%"),
+    Number("open_fraction", "share of time open", "%"),
+    Number("separations_per_cycle", "separations per cycle"),
+    Number("normal_force_min", "least normal force", "force"),
+    Number("normal_force_max", "largest normal force", "force"),
     Number("contact_amplitude", "amplitude in the contact", "length"),
     Number("contact_peak_to_peak", "peak to peak in the contact", "length"),
     Number("contact_first_harmonic_amplitude", "first harmonic in the contact", "length"),
@@ -41,7 +45,7 @@ _OF_CONTACT = (
     Number("equivalent_damping", "equivalent damping of the contact, cω/k₁"),
 )
 #: Of these what there is to say of a contact that never slides.
-_HELD = ("stuck_fraction", "contact_amplitude", "contact_peak_to_peak")
+_HELD = ("stuck_fraction", "normal_force_min", "normal_force_max", "contact_amplitude", "contact_peak_to_peak")
 
 _OF_MASS = (
     Number("amplitude", "amplitude of", "length"),

@@ -40,6 +40,11 @@ _ELASTIC = (
     ("slip_reversals_per_cycle", "slip reversals per cycle", "linear"),
     ("elastic_fraction", "share of time without slip", "linear"),
 )
+_OPENING = (
+    ("open_fraction", "share of time open", "linear"),
+    ("separations_per_cycle", "separations per cycle", "linear"),
+    ("normal_force_max", "largest normal force", "log"),
+)
 _ALWAYS = (
     ("multiplier", "Floquet multiplier", "linear"),
     ("period", "period in excitation cycles", "linear"),
@@ -53,7 +58,8 @@ def quantities_of(view: View) -> tuple[CellQuantity, ...]:
     first = "regime of all contacts" if together else f"regime and {counted_of(view).events}"
     work = "energy dissipated by all contacts" if together else "energy dissipated by friction"
     of_contact = () if together else _ELASTIC if elastic else _RIGID
-    rows = (*of_contact, *_ALWAYS, (_WORK, work, "log"))
+    opens = () if together or all(one.normal is None for one in view.contacts) else _OPENING
+    rows = (*of_contact, *opens, *_ALWAYS, (_WORK, work, "log"))
     offered = view.engine.outputs
 
     def known(table: tuple[tuple[str, str, str], ...]) -> list[CellQuantity]:

@@ -10,13 +10,14 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from ..model.general import refuse_banks, refuse_modes, refuse_phases
+from ..model.general import refuse_banks, refuse_modes
 from ..model.settings import Solver, Start
 from ..model.system import System
 from ..model.variations import named_number
 from ..units.axes import KINDS, ratios, require
 from ..units.scales import Units, scales_of
 from .contacts import contacts_of, put_contact
+from .law_numbers import is_of_law, put_law_number
 from .scene_parts import Contact, Slider
 from .sliders import sliders_of
 
@@ -41,8 +42,12 @@ class Scene:
     units: Units | None = None
 
     def __post_init__(self) -> None:
-        refuse_phases(self.system, "show a page")
         refuse_banks(self.system, "show a page")
+        if not self.system.contact_system.count:
+            raise InputError(
+                "cannot show a page of a system without contacts: its maps are over the friction in them; "
+                "use frictionmap curves"
+            )
         object.__setattr__(self, "changed", lru_cache(_KEPT)(self._changed))
 
     @property
@@ -71,6 +76,9 @@ class Scene:
         system = put_contact(self.system, contact) if contact else self.system
         changed: dict[str, Any] = {}
         for text, value in numbers:
+            if is_of_law(text):
+                changed["contacts"] = put_law_number(changed.get("contacts", system.contacts), text, value)
+                continue
             number = named_number(text, "slider")
             before = changed.get(number.key, getattr(system, number.key))
             changed[number.key] = number.put_into(before, value)

@@ -58,7 +58,9 @@ def _describe_contact(view: View, values: Mapping[str, np.ndarray], j: int) -> s
     who = groups[j].name if len(groups) > 1 else "the contact"
     elastic, regime = groups[j].stiffness is not None, int(values["contact_regime"][j])
     does = (_ELASTIC if elastic else _RIGID).get(regime) or _counted(values, j, elastic=elastic)
-    return f"{who[0].upper()}{who[1:]} {does}."
+    opened = 100.0 * float(values["open_fraction"][j]) if "open_fraction" in values else 0.0
+    opens = f"; it is open {opened:.3g} % of the time" if opened > 0.0 else ""
+    return f"{who[0].upper()}{who[1:]} {does}{opens}."
 
 
 def _describe_many(view: View, values: Mapping[str, np.ndarray]) -> list[str]:

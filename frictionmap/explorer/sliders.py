@@ -4,6 +4,7 @@ from ..model.contact import Contact
 from ..model.general import contacts_of
 from ..model.system import System
 from .contacts import damped_alike
+from .law_numbers import numbers_of_law
 from .scene_parts import Slider
 
 #: Numbers of a kind up to which each has a slider; beyond it a list is no choice any more.
@@ -72,7 +73,53 @@ def _contacts(system: System) -> tuple[Slider, ...]:
         if contact.wall_speed > 0.0:
             label = "wall speed v / (ω1P/k1)" if alone else f"wall speed{name}"
             found.append(_scaled(f"{key}wall_speed", label, contact.wall_speed, "times ω1P/k1", "velocity"))
+        found += [*_law(contact, key, name), *_normal(contact, key, name)]
     return tuple(found)
+
+
+#: Numbers of friction over speed: label, end of the slider at least, what the number is over.
+_LAW = {
+    "kinetic": ("friction at high speed / at 0", 1.5, "times the friction at speed 0"),
+    "speed": ("speed at which friction falls", 0.0, "times ω1P/k1"),
+    "viscous": ("slope added to friction over speed", 1.0, "per ω1P/k1"),
+    "last": ("friction at the last break point / at 0", 1.5, "times the friction at speed 0"),
+    "slope": ("slope of friction beyond the last break point", 1.0, "per ω1P/k1"),
+}
+
+
+def _law(contact: Contact, key: str, name: str) -> list[Slider]:
+    """Friction over speed: how far it falls, at which speed, and how it rises."""
+    if contact.law is None:
+        return []
+    found = []
+    for number, value in numbers_of_law(contact.law).items():
+        label, most, unit = _LAW[number]
+        ends = (f"{key}law.{number}", f"{label}{name}")
+        if number == "speed":
+            found.append(_scaled(*ends, value, unit, "velocity"))
+        else:
+            found.append(_upward(*ends, (0.0, most), value, unit))
+    return found
+
+
+def _normal(contact: Contact, key: str, name: str) -> list[Slider]:
+    """A normal force that moves with the structure: preload, stiffness and coefficient of friction."""
+    if contact.normal is None:
+        return []
+    normal, found = contact.normal, []
+    if normal.preload is not None:
+        size = max(abs(normal.preload), 1.0)
+        ends = (-size if normal.preload < 0.0 else 0.0, 5.0 * size)
+        found.append(
+            Slider(f"{key}normal.preload", f"preload N0 / P{name}", *ends, normal.preload, "linear",
+                   "times P; negative: a gap", "force")
+        )  # fmt: skip
+    found.append(_scaled(f"{key}normal.stiffness", f"normal stiffness kn / k1{name}", normal.stiffness,
+                         "times k1", "stiffness"))  # fmt: skip
+    if normal.friction > 0.0:
+        found.append(_upward(f"{key}normal.friction", f"coefficient of friction{name}", (0.0, 1.0),
+                             normal.friction, ""))  # fmt: skip
+    return found
 
 
 def _friction(contact: Contact, key: str, name: str, *, several: bool) -> list[Slider]:

@@ -71,7 +71,14 @@ class PhasesEngine(Engine):
         self._refuse("find friction without stops")
 
     def limits(self, r: np.ndarray, mu: np.ndarray, watch: Watch | None = None) -> Limits:
-        self._refuse("compute boundaries for this")
+        from ..general.normal_limits import no_slip_friction
+
+        self.check_static(mu)
+        count = self.system.contact_system.count
+        none = np.full((mu.size, r.size, 1), np.nan)
+        stick = no_slip_friction(self.system, r, mu)
+        each = np.repeat(stick[..., np.newaxis] if count == 1 else none, count, axis=-1)
+        return Limits(none[..., 0], stick, each, none, none)
 
     def boundaries(self, r: np.ndarray, mu: np.ndarray) -> "xr.Dataset":
         from ..general.normal_limits import normal_boundaries
@@ -91,7 +98,11 @@ class PhasesEngine(Engine):
         self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
         progress: Progress | None, watch: Watch | None,
     ) -> tuple[dict[str, np.ndarray], Limits]:  # fmt: skip
-        self._refuse("compute outputs of cells for this")
+        from ..phases.dataset import solve_cells
+
+        wanted = tuple(dict.fromkeys(("regime", "contact_regime", *names)))
+        limits = self.limits(axes["r"], axes["mu"], watch)
+        return solve_cells(self.system, axes, wanted, solver, threads, progress, watch), limits
 
     def curves(
         self, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,

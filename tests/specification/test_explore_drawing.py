@@ -306,7 +306,7 @@ def test_compilation_may_end_while_its_state_is_read():
         assert jobs.state() == {}  # nothing is compiled any more
 
 
-@pytest.mark.parametrize("kind", ["one", "structure", "general"])
+@pytest.mark.parametrize("kind", ["one", "structure", "general", "phases"])
 def test_every_kind_of_work_of_the_server_has_an_expected_time(kind):
     source = (ROOT / "frictionmap/explorer/server.py").read_text(encoding="utf-8")
     alone = set(re.findall(r'self\._enter\("(\w+)", query, gone\)', source))

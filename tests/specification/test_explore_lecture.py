@@ -141,7 +141,7 @@ def test_separate_texts_are_not_read_as_one(browser, request, where):
         assert page.evaluate(GLUED) == []
 
 
-def test_a_coarse_map_says_beside_the_cells_how_many_there_would_be(browser, two):
+def test_a_coarse_map_states_how_many_cells_there_would_be(browser, two):
     with page_of(browser, two.url, viewport=LARGE) as page:
         page.route("**/map?**", slow_first := SlowAnswers())
         page.evaluate(MOVE, ["mu", 500])

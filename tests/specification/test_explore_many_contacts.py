@@ -57,7 +57,7 @@ def test_masses_of_the_shown_contact_are_drawn_and_move():
     np.testing.assert_allclose(drawing_curves(forces, tau, 0)["load"], [2.0 * np.cos(tau)], atol=1e-6)
 
 
-def test_a_motion_of_many_contacts_is_told_in_few_sentences(tall):
+def test_a_motion_of_many_contacts_has_few_sentences(tall):
     header, arrays = packet(tall, "/motion?at=0.85,0.05")
     regime = fm.response(config_of(TALL, {}).system, 0.85, 0.05).contact_regime.values
     counted = {

@@ -1,5 +1,6 @@
 // The system in motion: base, masses, springs, loads, and contacts, each with a light that is on while it is stuck.
 
+import { OPEN } from "./events.js";
 import { sampled } from "./moment.js";
 
 /** Sizes in units of the drawing, which is as wide as its panel. */
@@ -104,6 +105,7 @@ export class Drawing {
   set(place) {
     for (const move of this.#moving) move(place);
     const at = Math.min(this.length - 1, Math.floor(place + 1e-6));
+    this.open = this.about.contacts.map(({ row }) => this.states[row * this.length + at] === OPEN);
     const stuck = this.about.contacts.map(({ row }) => this.states[row * this.length + at] === 0);
     stuck.forEach((lit, k) => this.lights[k].classList.toggle("lit", lit));
     return stuck;

@@ -1,12 +1,17 @@
 // Events of a motion: what the contacts begin to do, in order of time.
 
-const RIGID = { stick: "stops", slide: "begins to slide", turn: "turns without a stop" };
-const ELASTIC = { stick: "holds", slide: "begins to slip", turn: "slips the other way" };
+const RIGID = { stick: "stops", slide: "begins to slide", turn: "turns without a stop", open: "opens", close: "closes and slides" };
+const ELASTIC = { stick: "holds", slide: "begins to slip", turn: "slips the other way", open: "opens", close: "closes and slips" };
+
+/** State of an open contact, beside its directions. */
+export const OPEN = 2;
 
 /** What begins between two states of a contact; "" if nothing does. */
 function change(before, after) {
   if (before === after) return "";
+  if (after === OPEN) return "open";
   if (after === 0) return "stick";
+  if (before === OPEN) return "close";
   return before === 0 ? "slide" : "turn";
 }
 

@@ -154,7 +154,7 @@ export class MotionPanel {
     const stuck = this.drawing.set(place);
     this.moment.set(place);
     const { contacts } = motion.drawing;
-    const words = contacts.map(({ elastic }, k) => (stuck[k] ? (elastic ? "no slip" : "stuck") : elastic ? "slips" : "slides"));
+    const words = contacts.map(({ elastic }, k) => (this.drawing.open[k] ? "open" : stuck[k] ? (elastic ? "no slip" : "stuck") : elastic ? "slips" : "slides"));
     [...this.#part(".states").children].forEach((light, k) => {
       if (light.lastChild.textContent === words[k]) return;
       light.lastChild.textContent = words[k];
@@ -172,8 +172,8 @@ export class MotionPanel {
 
   #numberRow(entry, value) {
     const { units } = this.motion;
-    const unit = { length: units.length, energy: units.energy }[entry.unit] ?? entry.unit;
-    const physical = this.motion.physical[{ length: "length", energy: "work" }[entry.unit]];
+    const unit = { length: units.length, energy: units.energy, force: units.force }[entry.unit] ?? entry.unit;
+    const physical = this.motion.physical[{ length: "length", energy: "work", force: "force" }[entry.unit]];
     if (entry.why) return tableRow(entry.label, `none: ${entry.why}`, "text");
     return tableRow(entry.label, `${short(value, 6)}${Number.isFinite(value) && unit ? ` ${unit}` : ""}${inUnits(value, physical)}`);
   }

@@ -12,7 +12,7 @@ from ..model.general import refuse_general
 from ..model.settings import Start
 from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
-from .drawing import drawing_curves, drawing_of
+from .drawing import drawing_curves, drawing_of, mass_names, vectors_of
 from .lines import values_of_lines
 from .numbers import listed_contacts, numbers_of
 from .quantities import counted_of
@@ -74,7 +74,7 @@ def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
     header |= {
         **_regime(view, values), "summary": describe_motion(view, beta, values, limits),
         "entries": [entry._asdict() for entry in entries],
-        "comment": comment, "dofs": view.system.dofs.numbers,
+        "comment": comment, "dofs": mass_names(view.system),
         "contacts": [one.name for one in view.contacts] if k is None else [],
         "listed": listed_contacts(view, values),
         "contact": view.contacts[0].name if k is not None and several else "",
@@ -115,7 +115,9 @@ def curves_of(view: View, values: Mapping[str, np.ndarray]) -> dict[str, np.ndar
     return {
         **{name: table.astype(np.float32) for name, table in drawn.items()},
         **drawing_curves(system, tau, k),
-        "states": np.where(values.get("open", np.zeros_like(direction)) == 1, _OPEN, direction).astype(np.int8),
+        "states": np.where(values.get("open", np.zeros_like(direction)) == 1, _OPEN, direction).astype(
+            np.int8
+        ),
         "direction": np.ascontiguousarray(direction if k is None else direction[k]).astype(np.int8),
     }
 
@@ -125,8 +127,9 @@ def _rates(view: View, values: Mapping[str, np.ndarray]) -> np.ndarray:
     contacts, tau = view.system.contact_system, values["tau"]
     base = sum(-n * (u * np.exp(1j * n * tau)).imag for n, u in contacts.base.items()) + np.zeros_like(tau)
     rows = []
-    for group, direction in zip(contacts.groups, values["direction"], strict=True):
-        rate = group.vector @ values["v"] - group.base * base
+    vectors = vectors_of(view.system)
+    for group, vector, direction in zip(contacts.groups, vectors, values["direction"], strict=True):
+        rate = vector @ values["v"] - group.base * base
         stuck = (direction == 0) & (group.stiffness is None)  # to the bit, not to rounding
         rows.append(np.where(stuck, group.first.wall_velocity, rate))
     return np.array(rows)

@@ -8,6 +8,7 @@ from .. import checks
 from ..model.settings import Quantity, curve_settings
 from ..pictures.classes import of_cells
 from ..units.axes import KINDS
+from .drawing import mass_names
 from .quantities import counted_of
 from .queries import PAGE, Query, needed, points_of
 from .views import Follower, View, middles
@@ -63,7 +64,7 @@ def cut(
         pieces.append(_piece(view, along, at, place[first : first + _AT_ONCE], follower))
     joined = {name: np.concatenate([piece[name] for piece in pieces], axis=-1) for name in pieces[0]}
     header = {
-        "along": along, "at": at, "ends": getattr(view, along), "dofs": view.system.dofs.numbers,
+        "along": along, "at": at, "ends": getattr(view, along), "dofs": mass_names(view.system),
         "contacts": [one.name for one in view.contacts] if view.shown is None else [],
     }  # fmt: skip
     return header, joined

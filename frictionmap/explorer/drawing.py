@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..model.system import System
+from ..structures.dofs import POINT
 
 #: Masses, springs and contacts that are drawn at most.
 _MASSES, _SPRINGS, _CONTACTS = 8, 12, 12
@@ -34,17 +35,35 @@ def drawing_of(system: System, shown: int | None = None) -> dict[str, Any]:
 
     shown : the contact that is shown, counted from 0, which is drawn in any case; None: all together
     """
-    rows = _rows(system, shown)
-    complete = len(rows) == system.n
+    rows, names = _rows(system, shown), mass_names(system)
+    complete = len(rows) == system.n and system.contact_system.points is None
     return {
         "rows": rows,
-        "names": [str(system.dofs.numbers[row]) for row in rows],
+        "names": [str(names[row]) for row in rows],
         "masses": system.n,
         "springs": _springs(system.modes.stiffness) if complete else [],
         "base": system.excitation == "base",
         "loaded": [rows.index(row) for row in _loaded(system) if row in rows],
         "contacts": [contact._asdict() for contact in _contacts(system, rows, shown)],
     }
+
+
+def mass_names(system: System) -> list[int] | list[str]:
+    """Short names of masses: their numbers, or those of points."""
+    dofs = system.dofs
+    return [dofs.word(number) for number in dofs.numbers] if dofs.noun == POINT else list(dofs.numbers)
+
+
+def vectors_of(system: System) -> np.ndarray:
+    """Displacement in each contact per displacement of the masses, or points, (N, n)."""
+    general = system.contact_system
+    if general.points is None:
+        return general.vectors
+    found = np.zeros((general.count, system.n))
+    for row, group in zip(found, general.groups, strict=True):
+        numbers = [system.dofs.number(mass, "masses") for mass in group.first.masses]  # type: ignore[union-attr]
+        row[system.dofs.rows(numbers)] = (1.0,) if len(numbers) == 1 else (-1.0, 1.0)
+    return found
 
 
 def drawing_curves(system: System, tau: np.ndarray, shown: int | None = None) -> dict[str, np.ndarray]:
@@ -54,7 +73,7 @@ def drawing_curves(system: System, tau: np.ndarray, shown: int | None = None) ->
     if system.excitation == "base":
         phasors = system.contact_system.base
         return {"base": _displacements_at({n: np.array([u]) for n, u in phasors.items()}, tau)[0]}
-    forces = system.contact_system.forces
+    forces = system.contact_system.loads
     return {"load": _displacements_at({n: load[loaded] for n, load in forces.items()}, tau)}
 
 
@@ -68,7 +87,7 @@ def _rows(system: System, shown: int | None) -> list[int]:
     """Rows of the masses that are drawn: those of the contact that is shown first, then of the others."""
     if system.n <= _MASSES and system.reduction is None:
         return list(range(system.n))
-    vectors = system.contact_system.vectors
+    vectors = vectors_of(system)
     first = [] if shown is None else np.flatnonzero(vectors[shown]).tolist()
     touched = np.flatnonzero(vectors.any(axis=0)).tolist()
     return sorted(list(dict.fromkeys([*first, *touched, *_loaded(system)]))[:_MASSES])
@@ -78,7 +97,7 @@ def _loaded(system: System) -> list[int]:
     """Rows of masses under load, the largest first; none if the base moves."""
     if system.excitation == "base":
         return []
-    size = sum(np.abs(load) for load in system.contact_system.forces.values())
+    size = sum(np.abs(load) for load in system.contact_system.loads.values())
     order = np.argsort(-np.asarray(size), kind="stable")
     return [int(row) for row in order if np.asarray(size)[row] > 0.0][:_MASSES]
 
@@ -96,13 +115,14 @@ def _springs(stiffness: np.ndarray) -> list[list[int]]:
 def _contacts(system: System, rows: list[int], shown: int | None) -> list[DrawnContact]:
     """The contacts whose masses are drawn, that which is shown among them."""
     groups = system.contact_system.groups
-    drawn = [k for k, group in enumerate(groups) if np.isin(np.flatnonzero(group.vector), rows).all()]
+    masses = [np.flatnonzero(vector).tolist() for vector in vectors_of(system)]
+    drawn = [k for k, touched in enumerate(masses) if set(touched) <= set(rows)]
     order = sorted(drawn, key=lambda k: (k != shown, k))[:_CONTACTS]
     return [
         DrawnContact(
             k,
             groups[k].name if len(groups) > 1 else "",
-            [rows.index(row) for row in np.flatnonzero(groups[k].vector).tolist()],
+            [rows.index(row) for row in masses[k]],
             bool(groups[k].base),
             groups[k].stiffness is not None,
             float(groups[k].first.belt),

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from ..errors import InputError
 from ..model.contact import Contact
-from ..model.friction_law import Formula, FrictionLaw, formula_law
+from ..model.friction_law import FrictionLaw, formula_law
 
 #: Numbers of a law: of a formula, and of break points.
 OF_FORMULA, OF_POINTS = ("kinetic", "speed", "viscous"), ("last", "slope")
@@ -53,7 +53,7 @@ def put_law_number(contacts: Sequence[Contact] | None, key: str, value: float) -
 
 def _changed(law: FrictionLaw, name: str, value: float) -> FrictionLaw:
     if law.curve is not None:
-        return formula_law(**Formula._asdict(law.curve._replace(**{name: value})))
+        return formula_law(**{**law.curve._asdict(), name: value})
     if name == "slope":
         return replace(law, slope=value)
     share = (value - 1.0) / (law.factor[-1] - 1.0)  # all break points keep their shares of the fall

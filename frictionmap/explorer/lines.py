@@ -14,7 +14,7 @@ def lines_of(view: View) -> tuple[Line, ...]:
     elastic, k = view.system.contact_system.elastic, view.shown
     held = ", the others held" if elastic.size > 1 else ""
     if view.system.contact_system.has_phases:
-        return _of_opening(view)
+        return _opening_lines(view)
     if k is not None and elastic[k]:
         return (_no_slip(f"the contact never slips{held}", _DASHED),)
     stick = _stick(view, "all contacts can stay stuck" if k is None else f"the contact can stay stuck{held}")
@@ -28,7 +28,7 @@ def lines_of(view: View) -> tuple[Line, ...]:
     return (Line(("beta_lim",), "lim", (), f"below: {who}"), *stick, *_further(view))
 
 
-def _of_opening(view: View) -> tuple[Line, ...]:
+def _opening_lines(view: View) -> tuple[Line, ...]:
     """The friction at preload from which the only contact, whose normal force moves, never slides."""
     general = view.system.contact_system
     if general.count > 1 or general.springs:

@@ -45,7 +45,13 @@ _OF_CONTACT = (
     Number("equivalent_damping", "equivalent damping of the contact, cω/k₁"),
 )
 #: Of these what there is to say of a contact that never slides.
-_HELD = ("stuck_fraction", "normal_force_min", "normal_force_max", "contact_amplitude", "contact_peak_to_peak")
+_HELD = (
+    "stuck_fraction",
+    "normal_force_min",
+    "normal_force_max",
+    "contact_amplitude",
+    "contact_peak_to_peak",
+)
 
 _OF_MASS = (
     Number("amplitude", "amplitude of", "length"),

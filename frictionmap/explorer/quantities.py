@@ -5,6 +5,7 @@ from typing import NamedTuple
 from ..model.system import System
 from ..pictures.classes import OVERALL, OVERALL_ELASTIC, SLIPS, STOPS, Counted
 from ..pictures.palette import CLASSES, ONE_WAY, ONE_WAY_LABEL, Look
+from ..structures.dofs import POINT
 from .views import View
 
 #: Masses whose amplitudes are offered one by one.
@@ -82,7 +83,9 @@ def _amplitudes(system: System) -> list[CellQuantity]:
 
 
 def name_of_mass(system: System, number: int) -> str:
-    """Name of a mass: its number and label; without a number if it is the only one."""
+    """Name of a mass: its number and label; without a number if it is the only one; of a point its name."""
+    if system.dofs.noun == POINT:
+        return f"point {system.dofs.word(number)}"
     return f"mass {system.dofs.word(number)}" if system.n > 1 else "the mass"
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from ..model.general import refuse_banks, refuse_modes
+from ..model.general import refuse_banks
 from ..model.settings import Solver, Start
 from ..model.system import System
 from ..model.variations import named_number
@@ -99,7 +99,6 @@ def scene_of(config: "Config") -> Scene:
     system = config.system
     if config.variations is not None:
         system = config.variations.at([0] * len(config.variations.axes))
-    refuse_modes(system, "explore the map")
     ends, mu = (_ends(config.r), _ends(config.beta)), float(config.mu[0])
     return Scene(config.title, system, *ends, mu, config.solver, config, config.units)
 
@@ -118,7 +117,6 @@ def scene_of_system(
 ) -> Scene:
     """Make the scene of a system, from checked arguments."""
     checks.instance(system, "system", System)
-    refuse_modes(system, "explore the map")
     if not isinstance(title, str):
         raise InputError("title", f"must be text; got {checks.one_line(title)}")
     checks.choice(start, "start", get_args(Start))

@@ -131,13 +131,13 @@ def test_friction_that_never_holds_has_no_range(pages):
 @pytest.mark.parametrize(
     ("text", "query", "message"),
     [
-        (CHAIN, "goal=at-most&band=0.3,2.2&limit=1", "limit must be >= 2.72710294, the least peak"),
+        (CHAIN, "goal=at-most&band=0.3,2.2&limit=1", "limit must be >= 2.7272 P/k1, the least peak"),
         (CHAIN, "goal=at-most&band=0.3,2.2", "limit must be given; got nothing"),
         (CHAIN, "goal=at-most&band=0.3,2.2&limit=0", "limit must be > 0; got 0"),
         (CHAIN, "goal=best&band=0.3,2.2", "goal must be one of least-peak, no-stop, stuck, at-most"),
         (CHAIN, "goal=least-peak&band=0.3", "band must be two frequencies; got 1"),
         (CHAIN, "goal=least-peak&band=0.3,x", "band must be a number; got 'x'"),
-        (CHAIN, "goal=least-peak&band=2,1", "band must be increasing"),
+        (CHAIN, "goal=least-peak&band=2,1", "band must be two increasing frequencies; got 2 to 1"),
         (CHAIN, "goal=stuck&band=0,1", "band must be > 0; got 0"),
         (CHAIN, "goal=least-peak&band=1,2&of=mass-3", "of must be one of mass-1, mass-2, contact-1"),
         (ELASTIC, "goal=no-stop&band=1,2", "a spring in the contact has no such limit"),

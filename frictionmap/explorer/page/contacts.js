@@ -2,7 +2,7 @@
 
 import { DRAWN, colour, massColour } from "./axes.js";
 import { around, draw } from "./chart.js";
-import { keyLine, make, paragraph, spaced } from "./dom.js";
+import { keyLine, make, nameOfMass, paragraph, spaced } from "./dom.js";
 import { row } from "./packet.js";
 
 /** A canvas in a frame that marks a moment over it. */
@@ -31,7 +31,7 @@ export function layOut(element, motion) {
 
 function namesOf({ x, dofs }) {
   const count = Math.min(x.shape[0], DRAWN);
-  return Array.from({ length: count }, (_, k) => keyLine(massColour(k), count === 1 ? "x, mass" : `x${dofs[k]}`));
+  return Array.from({ length: count }, (_, k) => keyLine(massColour(k), count === 1 ? "x, mass" : nameOfMass(dofs[k])));
 }
 
 /** Times in excitation periods. */

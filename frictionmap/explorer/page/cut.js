@@ -2,7 +2,7 @@
 
 import { DRAWN, colour, massColour, short } from "./axes.js";
 import { around, draw } from "./chart.js";
-import { keyLine } from "./dom.js";
+import { keyLine, nameOfMass } from "./dom.js";
 import { row } from "./packet.js";
 
 const SHOWN = {
@@ -135,7 +135,7 @@ export class CutPanel {
       if (curves.held) lines.push({ x, y: row(curves.held, k), colour: massColour(k), width: 1, dash: [2, 3] });
     }
     for (let k = 0; k < masses; k += 1) {
-      lines.push({ x, y: row(curves.amplitude, k), colour: massColour(k), width: 1.5, name: masses === 1 ? "mass" : `x${curves.dofs[k]}` });
+      lines.push({ x, y: row(curves.amplitude, k), colour: massColour(k), width: 1.5, name: masses === 1 ? "mass" : nameOfMass(curves.dofs[k]) });
     }
     lines.push({ x, y: curves.contact_amplitude, colour: ink, width: 2.2, dash: masses === 1 ? [6, 4] : undefined, name: "z, contact" });
     if (curves.held) lines.push({ x: [], y: [], colour: "#888", dash: [2, 3], name: "contact held" });
@@ -150,7 +150,7 @@ export class CutPanel {
     const lines = curves.contacts.map((contact, k) => ({ x, y: row(curves[name], k), width: 2, name: contact, colour: massColour(k % DRAWN), dash }));
     if (this.select.value !== "amplitude") return lines;
     const masses = Math.min(curves.amplitude.shape[0], DRAWN);
-    return [...Array.from({ length: masses }, (_, k) => ({ x, y: row(curves.amplitude, k), colour: massColour(k), width: 1.5, name: masses === 1 ? "mass" : `x${curves.dofs[k]}` })), ...lines];
+    return [...Array.from({ length: masses }, (_, k) => ({ x, y: row(curves.amplitude, k), colour: massColour(k), width: 1.5, name: masses === 1 ? "mass" : nameOfMass(curves.dofs[k]) })), ...lines];
   }
 
   #range(lines) {

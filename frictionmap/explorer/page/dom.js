@@ -33,6 +33,11 @@ export function lowered(text) {
   return text.split(/_(lim|stick|noslip)\b/).map((piece, k) => (k % 2 ? make("sub", {}, piece) : piece));
 }
 
+/** The displacement of a mass by its number, or that of a point by its name. */
+export function nameOfMass(name) {
+  return /^\d/.test(name) ? `x${name}` : name;
+}
+
 /** A row of a table: a name and a value, a number or words. */
 export function tableRow(name, value, kind = "number") {
   return make("tr", {}, make("th", {}, ...lowered(name)), make("td", { className: kind }, value));

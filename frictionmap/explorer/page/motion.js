@@ -4,7 +4,7 @@ import { DRAWN, colour, massColour, short } from "./axes.js";
 import { around, draw } from "./chart.js";
 import { bandsOf, drawContacts, layOut, timeOf } from "./contacts.js";
 import { Drawing } from "./drawing.js";
-import { groupRow, keyLine, make, paragraph, spaced, tableRow } from "./dom.js";
+import { groupRow, keyLine, make, nameOfMass, paragraph, spaced, tableRow } from "./dom.js";
 import { eventsOf } from "./events.js";
 import { Moment, sampled } from "./moment.js";
 import { row } from "./packet.js";
@@ -160,7 +160,7 @@ export class MotionPanel {
       light.lastChild.textContent = words[k];
       light.classList.toggle("lit", stuck[k]);
     });
-    const x = motion.drawing.rows.slice(0, 3).map((row, k) => `x${motion.drawing.names[k]} = ${short(sampled(motion.x, place, row * motion.tau.length), 3)}`);
+    const x = motion.drawing.rows.slice(0, 3).map((row, k) => `${nameOfMass(motion.drawing.names[k])} = ${short(sampled(motion.x, place, row * motion.tau.length), 3)}`);
     return [...x, ...contacts.map(({ name }, k) => `${name || "contact"} ${words[k]}`)].join(", ");
   }
 
@@ -258,7 +258,7 @@ export class MotionPanel {
     });
     this.moment.line(lower, drawn, time);
     const names = [];
-    for (let k = 0; k < masses; k += 1) names.push(keyLine(massColour(k), masses === 1 ? "x, mass" : `x${motion.dofs[k]}`));
+    for (let k = 0; k < masses; k += 1) names.push(keyLine(massColour(k), masses === 1 ? "x, mass" : nameOfMass(motion.dofs[k])));
     names.push(keyLine(ink, "z, contact", masses === 1 ? "dotted" : "solid"));
     if (lower.checkVisibility()) names.push(keyLine(colour("warm"), "friction"));
     if (bands.length) names.push(keyLine(colour("stop"), motion.still[0], "solid", 9));

@@ -351,6 +351,16 @@ def _list_of(number: Callable[[str], float]) -> Callable[[str], list[float]]:
     return convert
 
 
+def _megabytes(text: str) -> float:
+    size = float(text)
+    if not 0.0 < size < float("inf"):
+        raise ValueError
+    return size
+
+
+_megabytes.__name__ = "number of MB > 0"  # its name in argparse's errors
+
+
 def _takes_page(sub: argparse.ArgumentParser) -> None:
     text = "configuration of the map to explore (default: one mass against a fixed wall)"
     sub.add_argument("config", metavar="CONFIG.toml", type=Path, nargs="?", help=text)
@@ -361,6 +371,10 @@ def _takes_page(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--no-browser", action="store_true", help=text)
     text = "save the page as a single file, with precomputed maps for its sliders, instead of serving it"
     sub.add_argument("--export", dest="output", metavar="PAGE.html", type=_file, action=_Once, help=text)
+    text = "with --export: sliders that the file keeps, such as mu,damping_ratios, or none (default: all)"
+    sub.add_argument("--sliders", metavar="KEY,KEY", action=_Once, help=text)
+    text = "with --export: largest size of the file in MB; sliders have fewer places if it would be larger"
+    sub.add_argument("--size", metavar="MB", type=_megabytes, action=_Once, help=text)
     _takes_replacement(sub)
 
 

@@ -2,6 +2,7 @@
 
 import contextlib
 import functools
+import math
 import shlex
 import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from ..explorer.scene import Scene
+    from ..explorer.stored import StoredPage
     from ..files.config import Config
     from ..files.places import Output
     from ..motions.configuration import Motions, Task
@@ -326,6 +328,9 @@ def _explore(options: Options) -> None:
     if options.output is not None:
         _export_page(options, scene)
         return
+    for name in ("sliders", "size"):
+        if getattr(options, name) is not None:
+            raise InputError(f"cannot use --{name} without --export: it is of a saved page; add --export")
     from ..explorer.server import begin, open_server, show
 
     server = open_server(scene, options.port)
@@ -366,7 +371,7 @@ def _put(content: bytes, path: Path) -> None:
 def _export_page(options: Options, scene: "Scene | Motions") -> None:
     from .._kernels.compiler.notices import listening
     from ..explorer.scene import Scene
-    from ..explorer.stored import check_page, write_page
+    from ..explorer.stored import StoredPage, check_page
     from ..files.places import claimed
     from .progress import Progress
 
@@ -376,15 +381,56 @@ def _export_page(options: Options, scene: "Scene | Motions") -> None:
             f"frictionmap history {options.config}, and frictionmap plot"
         )
     check_page(options.output)
+    page = StoredPage(scene, _keys_of(options.sliders))
     with claimed(options.output, options.overwrite, scene.files) as output:
+        output.kept = lambda: _kept_page(output, page)
         with (
             Progress(f"page of {scene.title}", options.quiet, "maps") as progress,
             listening(progress.compiling),
         ):
-            page = write_page(scene, progress)
-        output.fill(lambda scratch: _put(page, scratch))
+            page.compute(progress, only_first=True)
+            _ask_for_sliders(options, page)
+            page.compute(progress, 1e6 * (options.size or math.inf))
+        content = page.page()
+        output.kept = lambda: ""
+        output.fill(lambda scratch: _put(content, scratch))
     if not options.quiet:
-        _print(f"{progress.took}; wrote {options.output} ({len(page) / 1e6:.2g} MB)")
+        fewer = f" with {page.done} of {page.count} maps" if page.done < page.count else ""
+        _print(f"{progress.took}; wrote {options.output}{fewer} ({len(content) / 1e6:.2g} MB)")
+
+
+def _keys_of(text: str | None) -> list[str] | None:
+    """Keys of sliders that were given; None: all."""
+    if text is None:
+        return None
+    return [] if text == "none" else [key.strip() for key in text.split(",") if key.strip()]
+
+
+def _ask_for_sliders(options: Options, page: "StoredPage") -> None:
+    """State the size that the page will have, and ask on a terminal which sliders it keeps."""
+    if options.quiet or sys.stderr is None:
+        return
+    about = f"{page.count} maps, about {page.expected_size / 1e6:.2g} MB"
+    asks = options.sliders is None and options.size is None and len(page.sliders) > 0
+    if not (asks and sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty()):
+        print(f"frictionmap: {about}", file=sys.stderr, flush=True)
+        return
+    keys = ", ".join(slider.key for slider in page.sliders)
+    print(f"frictionmap: {about} with the sliders {keys}", file=sys.stderr)
+    print(
+        "Sliders to keep, separated by commas (Enter: all; none: none): ", end="", file=sys.stderr, flush=True
+    )
+    answer = sys.stdin.readline().strip()
+    if answer:
+        page.keep(_keys_of(answer))
+
+
+def _kept_page(output: "Output", page: "StoredPage") -> str:
+    """Write the maps so far when the run is interrupted."""
+    if page.done == 0:
+        return ""
+    output.keep(page.page())
+    return f"wrote {output.path} with {page.done} of {page.count} maps"
 
 
 def _reduce(options: Options) -> None:

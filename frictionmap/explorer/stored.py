@@ -2,20 +2,23 @@
 
 The file asks nothing of any host: style, modules and maps are in it, and it opens without a server.  Maps are
 coloured classes, and quantities in 255 steps, the resolution of the colours; compressed, as text.  The file
-also contains the motion in the cell that the page opens with.
+also contains motions: in the cell that the page opens with, and in cells over every map.
 """
 
 import base64
 import json
 import re
+import struct
+import threading
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from .. import checks
 from ..errors import InputError
 from .cell import motion
 from .example import example_cell
@@ -34,6 +37,12 @@ _CELLS = {False: (360, 270), True: (180, 135)}
 
 #: Places of each slider: two sliders are moved together, further ones by themselves.
 _PLACES, _TOGETHER = 7, 2
+
+#: Cells of a map for each motion that is stored, each way: of the map that the page opens with, and of others.
+_PER_MOTION = {False: (24, 72), True: (12, 36)}
+
+#: Every so many samples of a motion are stored, and bits of their numbers: as many as a chart shows.
+_EVERY, _BITS = 4, 0xFFFFF000
 
 #: Share of a map that is done when its cells are computed, at most.
 _PACKED = 0.99
@@ -78,13 +87,6 @@ class _Unwatched:
         """Report nothing."""
 
 
-class _Kept(NamedTuple):
-    """Slider positions for which a file contains maps."""
-
-    values: dict[str, list[float]]  # places of sliders
-    points: list[tuple[float, ...]]  # of all those sliders
-
-
 def check_page(path: Path) -> None:
     """Refuse a file name that browsers would not open as a page."""
     if path.suffix.lower() not in (".html", ".htm"):
@@ -104,14 +106,30 @@ def places_of(slider: Slider) -> list[float]:
     return sorted({*rounded, slider.value})
 
 
-def _kept(sliders: tuple[Slider, ...]) -> _Kept:
-    values = {slider.key: places_of(slider) for slider in sliders}
-    own = [slider.value for slider in sliders]
-    points = [(*pair, *own[_TOGETHER:]) for pair in product(*list(values.values())[:_TOGETHER])]
-    for k, slider in enumerate(sliders[_TOGETHER:], start=_TOGETHER):
-        others = [value for value in values[slider.key] if value != slider.value]
-        points += [(*own[:k], value, *own[k + 1 :]) for value in others]
-    return _Kept(values, points)
+def _points_of(sliders: Sequence[Slider]) -> list[tuple[float, ...]]:
+    """Positions of the sliders with a map: the initial one, each slider by itself, the first two together."""
+    own = tuple(slider.value for slider in sliders)
+    values = [places_of(slider) for slider in sliders]
+    alone = [(*own[:k], one, *own[k + 1 :]) for k, several in enumerate(values) for one in several]
+    both = [(*pair, *own[_TOGETHER:]) for pair in product(*values[:_TOGETHER])]
+    return list(dict.fromkeys([own, *alone, *both]))
+
+
+def chosen_sliders(scene: Scene, keys: Sequence[str] | None) -> tuple[Slider, ...]:
+    """The sliders of these keys, in the order of the page; None: all.
+
+    Raises
+    ------
+    InputError
+        There is no such slider.
+    """
+    known = [slider.key for slider in scene.sliders]
+    for key in keys or ():
+        if key not in known:
+            raise InputError(
+                f"unknown slider {key!r}{checks.nearest(key, known)}; valid: {', '.join(known) or 'none'}"
+            )
+    return tuple(slider for slider in scene.sliders if keys is None or slider.key in keys)
 
 
 def _deflated(body: bytes) -> str:
@@ -163,36 +181,138 @@ def _example(scene: Scene, view: View) -> dict[str, Any] | None:
     }
 
 
-def _name(kept: _Kept, point: tuple[float, ...]) -> str:
-    """Name of a map: the positions of its sliders, counted from 0."""
-    places = (values.index(value) for values, value in zip(kept.values.values(), point, strict=True))
-    return ",".join(map(str, places))
+def _rounded(values: np.ndarray) -> np.ndarray:
+    """Curves with as many digits as a chart shows: they take half the room."""
+    if values.dtype != np.float32:
+        return values
+    return (np.ascontiguousarray(values).view(np.uint32) & np.uint32(_BITS)).view(np.float32)
 
 
-def _content(scene: Scene, progress: MapProgress) -> dict[str, Any]:
-    """Content of a saved page."""
-    kept = _kept(scene.sliders)
-    first = read_query(scene, "")
-    offered = quantities_of(first.view)
-    maps, count = {}, len(kept.points)
-    systems: list[dict[str, Any]] = []  # few of them: not all sliders change them
-    for done, point in enumerate(kept.points):
-        text = "&".join(f"{key}={value!r}" for key, value in zip(kept.values, point, strict=True))
-        query = read_query(scene, text)
-        of_map = _map(query.view, offered, _OneOf(progress, done, count))
-        about = description(scene, query.view)
-        if about not in systems:
-            systems.append(about)
-        maps[_name(kept, point)] = {**of_map, "about": systems.index(about)}
-        progress(done + 1, count)
-    columns, rows = _cells(first.view)
-    own = tuple(slider.value for slider in scene.sliders)
+def _thinned(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The curves of a motion with fewer samples."""
+    count = arrays["tau"].size if "tau" in arrays else 0
     return {
-        "scene": describe_scene(scene, first.view),
-        "r": scene.r, "beta": scene.beta, "columns": columns, "rows": rows,
-        "values": kept.values, "first": _name(kept, own), "maps": maps, "systems": systems,
-        "example": _example(scene, first.view),
-    }  # fmt: skip
+        name: _rounded(one[..., ::_EVERY]) if count and one.shape[-1] == count else one
+        for name, one in arrays.items()
+    }
+
+
+def _motions(scene: Scene, view: View, per_motion: int) -> dict[str, Any]:
+    """Motions in cells over a map, row by row from the lowest friction, each after the number of its bytes."""
+    columns, rows = (max(1, count // per_motion) for count in _cells(view))
+    axes = view.axes(columns, rows)
+    units, packets = units_of(scene, view), []
+    for beta in axes["beta"]:
+        for r in axes["r"]:
+            header, arrays = motion(view, float(r), float(beta), _Unwatched())
+            packet = pack({**header, **units, "others": False}, _thinned(arrays))
+            packets.append(struct.pack("<I", len(packet)) + packet)
+    return {"columns": columns, "rows": rows, "packets": _deflated(b"".join(packets))}
+
+
+class StoredPage:
+    """A page as one file that grows map by map; what has been computed can be written at any time.
+
+    sliders : keys of the sliders that it keeps; None: all
+    """
+
+    def __init__(self, scene: Scene, sliders: Sequence[str] | None = None) -> None:
+        self._scene = scene
+        self._lock = threading.Lock()
+        self._systems: list[dict[str, Any]] = []  # few of them: not all sliders change them
+        self._maps: dict[tuple[float, ...], dict[str, Any]] = {}  # by the positions of all sliders
+        self._example: dict[str, Any] | None = None
+        self.keep(sliders)
+
+    def keep(self, sliders: Sequence[str] | None) -> None:
+        """Keep these sliders only; of the maps so far the initial one stays."""
+        self.sliders = chosen_sliders(self._scene, sliders)
+        self._points = _points_of(self.sliders)
+        self._maps = {self._points[0]: one for one in list(self._maps.values())[:1]}
+
+    @property
+    def count(self) -> int:
+        """Number of maps of the complete page."""
+        return len(self._points)
+
+    @property
+    def done(self) -> int:
+        """Number of maps so far."""
+        return len(self._maps)
+
+    @property
+    def size(self) -> float:
+        """Bytes of its maps so far."""
+        with self._lock:
+            return sum(_size(one) for one in self._maps.values())
+
+    @property
+    def expected_size(self) -> float:
+        """Bytes of the complete page, as the maps so far have."""
+        first, *others = [_size(one) for one in self._maps.values()] or [0]
+        each = sum(others) / len(others) if others else first
+        return first + each * (self.count - 1)
+
+    def compute(self, progress: MapProgress, most: float = np.inf, only_first: bool = False) -> None:
+        """Compute the maps that are missing, until the file would have more than `most` bytes."""
+        for point in self._points[: 1 if only_first else None]:
+            if point in self._maps:
+                continue
+            if self._maps and self.size * (1.0 + 1.0 / self.done) > most:
+                return
+            found = self._computed(point, progress)
+            with self._lock:
+                self._maps[point] = found
+            progress(self.done, self.count)
+
+    def _computed(self, point: tuple[float, ...], progress: MapProgress) -> dict[str, Any]:
+        """A map with its motions; the first one comes with the example."""
+        text = "&".join(f"{slider.key}={value!r}" for slider, value in zip(self.sliders, point, strict=True))
+        view = read_query(self._scene, text).view
+        found = _map(view, quantities_of(view), _OneOf(progress, self.done, self.count))
+        per_motion = _PER_MOTION[not view.is_quick]
+        found["motions"] = _motions(self._scene, view, per_motion[bool(self._maps)])
+        if not self._maps:
+            self._example = _example(self._scene, view)
+        about = description(self._scene, view)
+        with self._lock:
+            if about not in self._systems:
+                self._systems.append(about)
+        return {**found, "about": self._systems.index(about)}
+
+    def _content(self) -> dict[str, Any]:
+        """What the page contains: sliders have the places for which there is a map with the others as they were."""
+        with self._lock:
+            maps, systems = dict(self._maps), list(self._systems)
+        own = self._points[0]
+        alone = [
+            sorted({point[k] for point in maps if point[:k] + point[k + 1 :] == own[:k] + own[k + 1 :]})
+            for k in range(len(own))
+        ]
+        named = {
+            ",".join(str(values.index(value)) for value, values in zip(point, alone, strict=True)): one
+            for point, one in maps.items()
+            if all(value in values for value, values in zip(point, alone, strict=True))
+        }
+        view = read_query(self._scene, "").view
+        columns, rows = _cells(view)
+        described = {**describe_scene(self._scene, view), "sliders": [one._asdict() for one in self.sliders]}
+        return {
+            "scene": described,
+            "r": self._scene.r, "beta": self._scene.beta, "columns": columns, "rows": rows,
+            "values": {slider.key: values for slider, values in zip(self.sliders, alone, strict=True)},
+            "first": next(iter(named)), "maps": named, "systems": systems, "example": self._example,
+        }  # fmt: skip
+
+    def page(self) -> bytes:
+        """The file with the maps so far, one at least."""
+        return _page(self._content()).encode()
+
+
+def _size(found: dict[str, Any]) -> int:
+    """Bytes of a map in the file, about."""
+    texts = [found["classes"], found["limits"], found["motions"]["packets"]]
+    return sum(map(len, (*texts, *(one["steps"] for one in found["values"].values()))))
 
 
 def _modules(files: dict[str, bytes]) -> Iterator[tuple[str, str]]:
@@ -229,7 +349,9 @@ def _page(content: dict[str, Any]) -> str:
 def write_page(scene: Scene, progress: MapProgress) -> bytes:
     """The page of a scene as one file.
 
-    Places of sliders: all of mu together with all of the next slider; of further ones each by itself, with
-    the others where the scene has them.  Its sliders move to places only that have a map.
+    Places of sliders: all of the first one together with all of the next one; of further ones each by itself,
+    with the others where the scene has them.  Its sliders move to places only that have a map.
     """
-    return _page(_content(scene, progress)).encode()
+    page = StoredPage(scene)
+    page.compute(progress)
+    return page.page()

@@ -79,6 +79,11 @@ class Output:
         except RuntimeError as error:  # netCDF's word for any trouble, a full disk above all
             raise OSError(f"cannot write {self.path}: {error}; check disk space") from error
 
+    def keep(self, content: bytes) -> None:
+        """Put a file into place from `kept`, which is called when nothing else can be put there any more."""
+        self._scratch.write_bytes(content)
+        self._place()
+
     def _place(self) -> None:
         if self._overwrite and self._target.exists():
             _take_after(self._scratch, self._target)

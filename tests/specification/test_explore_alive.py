@@ -188,12 +188,16 @@ def test_a_page_as_a_file_has_a_motion(browser, tmp_path, monkeypatch):
         check_moments(page, fm.response(fm.System(), r, beta, points=400), 1)
         page.mouse.move(*point(page, 0.75, 0.05))
         page.wait_for_function(
-            "() => document.querySelector('#motion').innerText.includes('motion in one cell')"
+            "() => document.querySelector('#motion .where').innerText.startsWith('nearest in this file')"
         )
         page.mouse.move(5, 5)
-        page.wait_for_selector("#motion .drawing .mass")
+        page.wait_for_function(
+            "() => document.querySelector('#motion .where').innerText.startsWith('example')"
+        )
         repainted(page, lambda: page.evaluate(MOVE, ["mu", 1]))
-        assert page.locator("#motion .drawing").count() == 0  # it is that of another mu
+        page.wait_for_function(  # that of another mu
+            "() => document.querySelector('#motion .where').innerText.startsWith('nearest in this file')"
+        )
 
 
 # History

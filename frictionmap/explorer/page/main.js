@@ -198,7 +198,7 @@ class Page {
     this.refiner.ask({ view, scene, columns, rows, table: this.table, kind, scale: null });
     map.pointed = this.pointed;
     const cell = view.cell ?? this.pointed;
-    if (motion && cell && this.source.live) this.motions.ask(cell, Boolean(view.cell));
+    if (motion && cell && this.#hasMotions) this.motions.ask(cell, Boolean(view.cell));
     if (view.cut) {
       this.cuts.ask();
     } else {
@@ -383,7 +383,7 @@ class Page {
       if (this.#resized) this.update(); // second axes take room
     }
     const cell = found.view.cell ?? this.pointed;
-    if (cell && !this.source.live) this.#showInFile(cell, found); // another system may do something else there
+    if (cell && !this.#hasMotions) this.#showInFile(cell, found); // another system may do something else there
     if (found.whole && !this.opened) this.#open();
     this.#markOutdated();
     const detail = { columns: found.columns, rows: found.rows, whole: found.whole };
@@ -407,6 +407,11 @@ class Page {
       const spent = performance.now() - state.since;
       if (spent > PATIENCE) this.#say(`Map of ${this.#cells(state)}: ${Math.round(100 * state.share)} %, about ${this.#duration((spent * (1 - state.share)) / state.share)} left.`);
     }
+  }
+
+  /** Whether there are motions of the view: a saved page may have some of its first map only. */
+  get #hasMotions() {
+    return this.source.hasMotions(this.view, this.scene);
   }
 
   #cells({ columns, rows }) {
@@ -533,7 +538,7 @@ class Page {
     this.#point(cell);
     if (!cell || this.view.cell) return;
     this.map.pointed = this.pointed = [cell.r, cell.beta];
-    if (this.source.live) this.motions.ask(this.pointed, false);
+    if (this.#hasMotions) this.motions.ask(this.pointed, false);
     else this.#showStored(cell, cell.picture);
     this.#markOutdated();
   }
@@ -562,7 +567,7 @@ class Page {
   }
 
   #pick(cell) {
-    if (cell && !this.source.live) this.#showStored(cell, cell.picture);
+    if (cell && !this.#hasMotions) this.#showStored(cell, cell.picture);
     if (!cell) this.#release();
     this.change({ cell: cell && [cell.r, cell.beta], cut: cell ? this.view.cut : "" });
   }
@@ -588,8 +593,9 @@ class Page {
     const { view } = this;
     this.others.stop();
     const motion = await this.#slowly(this.source.motion(view, this.scene, cell, signal), cell, kept);
-    if (kept !== Boolean(this.view.cell) || (!this.source.live && cell !== this.pointed)) return;
-    const kind = kept ? "selected" : cell === this.example ? "example" : "";
+    if (kept !== Boolean(this.view.cell) || (!kept && !this.source.live && cell !== this.pointed)) return;
+    const kinds = [kept && "selected", motion.nearest && "nearest in this file", !kept && cell === this.example && !motion.nearest && "example"];
+    const kind = kinds.filter(Boolean).join(", ");
     this.motion.show(motion, this.scene.classes[motion.class], kind, this.#motionKey(view, cell));
     this.#markOutdated();
     requestAnimationFrame(() => part("motion").dispatchEvent(new CustomEvent("painted", { detail: { r: motion.r, beta: motion.beta } })));
@@ -619,6 +625,10 @@ class Page {
 
   /** Show the motion in the example of a saved page, or what it contains about another cell. */
   #showInFile(cell, found) {
+    if (this.#hasMotions) {
+      this.motions.ask(cell, false);
+      return;
+    }
     if (cell === this.example && systemKey(this.view) === systemKey(firstView(this.scene))) this.motions.ask(cell, false);
     else this.#showStored(found.cellAt(cell), found);
   }
@@ -628,7 +638,7 @@ class Page {
     if (!cell) return;
     const value = cell.value === null ? "" : ` Value of ${quantity.label}: about ${short(cell.value, 3)}.`;
     this.motion.say(`r = ${short(cell.r)}, β = ${short(cell.beta)}: ${this.scene.classes[cell.class].label}.${value} ` +
-      "This file contains the motion in one cell; to see others, run frictionmap explore on the configuration.");
+      "This file has no motions of this map; to see them, run frictionmap explore on the configuration.");
   }
 
   async #fetchCut(signal) {

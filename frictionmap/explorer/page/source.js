@@ -90,6 +90,11 @@ export class Server {
     return this.#packet("map", view, scene, { ...piece, quantity: view.quantity }, signal);
   }
 
+  /** Whether there are motions of a view. */
+  hasMotions() {
+    return true;
+  }
+
   /** The motion in a cell. */
   motion(view, scene, cell, signal) {
     return this.#packet("motion", view, scene, { at: cell.join(",") }, signal);

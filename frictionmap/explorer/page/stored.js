@@ -54,9 +54,32 @@ export class Stored {
     return { cell: this.content.example?.cell ?? null };
   }
 
-  /** The motion in that cell. */
-  async motion() {
-    return unpack(await inflated(this.content.example.motion));
+  /** Whether the file has motions over the map of a view. */
+  hasMotions(view, scene) {
+    return Boolean(this.content.maps[this.#name(view, scene)]?.motions);
+  }
+
+  /** The motion in a cell: that of the example, else the nearest one that the file has. */
+  async motion(view, scene, [r, beta]) {
+    const { example, first } = this.content;
+    const name = this.#name(view, scene);
+    if (name === first && example && example.cell[0] === r && example.cell[1] === beta) return unpack(await inflated(example.motion));
+    const { columns, rows } = this.content.maps[name].motions;
+    const place = (value, [low, high], count) => Math.min(count - 1, Math.max(0, Math.floor(((value - low) / (high - low)) * count)));
+    const packets = await this.#packets(name);
+    return { ...unpack(packets[place(beta, this.fixed.beta, rows) * columns + place(r, this.fixed.r, columns)]), nearest: true };
+  }
+
+  /** The motions of a map; those of the last one are kept. */
+  async #packets(name) {
+    if (this.last?.name !== name) {
+      const bytes = await inflated(this.content.maps[name].motions.packets);
+      const sizes = new DataView(bytes);
+      const packets = [];
+      for (let at = 0; at < bytes.byteLength; at += 4 + sizes.getUint32(at, true)) packets.push(bytes.slice(at + 4, at + 4 + sizes.getUint32(at, true)));
+      this.last = { name, packets };
+    }
+    return this.last.packets;
   }
 
   /** The name of the map of a view: the places of its sliders. */

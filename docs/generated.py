@@ -32,7 +32,7 @@ _GROUPS: Mapping[str, tuple[str, ...]] = {
     "Pictures": (
         "plot_regimes", "plot_quantity", "plot_boundaries", "plot_curves", "plot_response", "plot_orbit",
         "plot_history", "plot_energies", "plot_spectrum", "plot_incremental", "plot_fit", "plot_shares",
-        "plot_forces", "plot_design", "plot_modes", "animate", "explore",
+        "plot_forces", "plot_design", "plot_modes", "plot_structure", "animate", "explore",
     ),
     "Errors, and others": ("InputError", "NoSteadyState"),
 }  # fmt: skip

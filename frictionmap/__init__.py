@@ -93,6 +93,7 @@ if TYPE_CHECKING:
         plot_response,
         plot_shares,
         plot_spectrum,
+        plot_structure,
     )
     from .probabilities import shares
     from .steady.boundaries import boundaries
@@ -152,6 +153,7 @@ __all__ = [
     "plot_response",
     "plot_shares",
     "plot_spectrum",
+    "plot_structure",
     "regimes",
     "response",
     "ring",
@@ -204,6 +206,7 @@ _HOME = {
     "plot_response": "plot",
     "plot_shares": "plot",
     "plot_spectrum": "plot",
+    "plot_structure": "plot",
     "ring": "model.sectors",
     "response": "steady.response",
     "shares": "probabilities",

@@ -14,6 +14,7 @@ from .datasets.labels import BOUNDARIES, HISTORY_VARIABLES, SHARES
 from .errors import InputError
 from .files.reading import kind
 from .model.settings import CURVE_OUTPUTS
+from .model.system import System
 from .pictures.curves.figure import CURVE_VARIABLES, plot_curves
 from .pictures.curves.harmonics import HARMONIC_VARIABLES
 from .pictures.designs.figure import plot_design
@@ -32,6 +33,7 @@ from .pictures.motions.in_time import plot_history, plot_spectrum
 from .pictures.motions.orbit import plot_orbit
 from .pictures.motions.suites import plot_energies, plot_incremental
 from .pictures.options import FigureOptions
+from .pictures.structures import plot_structure
 from .pictures.styles import settings_of, written
 
 if TYPE_CHECKING:
@@ -61,7 +63,9 @@ __all__ = [
     "plot_response",
     "plot_shares",
     "plot_spectrum",
+    "plot_structure",
     "save_picture",
+    "save_structure",
 ]
 
 FORMATS = (".png", ".pdf", ".svg")
@@ -184,6 +188,34 @@ def save_picture(
     drawn = BytesIO()
     with settings_of(style):
         axes = plot_forces(ds, against, **options) if against else draw(ds, quantity, log=log, **options)
+        written(axes[0].figure, drawn, path.suffix[1:].lower(), options.get("dpi"))
+    path.write_bytes(drawn.getbuffer())
+
+
+def save_structure(
+    system: System,
+    path: Path,
+    what: str = "structure",
+    *,
+    style: Path | None = None,
+    **options: Unpack[FigureOptions],
+) -> None:
+    """Draw a structure, or its modes, into a file .png, .pdf or .svg.
+
+    Raises
+    ------
+    InputError
+        `what` is neither "structure" nor "modes", or an option is invalid.
+    """
+    drawn_by: dict[str, Callable[..., AxesArray]] = {"structure": plot_structure, "modes": plot_modes}
+    if what not in drawn_by:
+        raise InputError(
+            f"unknown quantity {what!r} of a configuration{nearest(what, drawn_by)}; "
+            f"valid: {', '.join(drawn_by)}"
+        )
+    drawn = BytesIO()
+    with settings_of(style):
+        axes = drawn_by[what](system, **options)
         written(axes[0].figure, drawn, path.suffix[1:].lower(), options.get("dpi"))
     path.write_bytes(drawn.getbuffer())
 

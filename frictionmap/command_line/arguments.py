@@ -477,7 +477,11 @@ def _takes_borders(sub: argparse.ArgumentParser, when: str = "") -> None:
 
 def _takes_files(command: Callable[[str, str, str], argparse.ArgumentParser]) -> None:
     """Add the commands that read files of other commands."""
-    sub = command("plot", "picture of any output file", "Draw any file written by the other commands.")
+    sub = command(
+        "plot",
+        "picture of any output file",
+        "Draw any file written by the other commands, or the structure of a configuration CONFIG.toml.",
+    )
     _takes_picture(sub)
     text = "Write a map, or a slice of one, as NetCDF or as a table (CSV)."
     sub = command("export", "map or slice as NetCDF or CSV", text)

@@ -568,7 +568,31 @@ def _maps_along(options: Options, names: Collection[str]) -> "xr.Dataset":
         return part[[name for name in part.data_vars if name in names]].load()
 
 
+def _plot_structure(options: Options) -> None:
+    """Draw the structure of a configuration, or its modes."""
+    from ..files.config import load_config
+    from ..files.places import claimed
+    from ..plot import FORMATS, save_structure
+
+    what = options.quantity or "structure"
+    for flag, wrong in (("--at", options.at), ("--against", options.against), ("--log", options.log)):
+        if wrong:
+            raise InputError(f"cannot use {flag} with a configuration: it is for results; omit it")
+    path = options.output or Path(f"{options.file.stem}-{what}.png")
+    if path.suffix.lower() not in FORMATS:
+        raise InputError(f"-o must end in {', '.join(FORMATS)}; got {path}")
+    system = load_config(options.file).system
+    given: Any = {name: getattr(options, name) for name in FIGURE if getattr(options, name) is not None}
+    with claimed(path, options.overwrite, [options.file]) as output:
+        output.fill(lambda scratch: save_structure(system, scratch, what, style=options.style, **given))
+    if not options.quiet:
+        _print(f"wrote {path}")
+
+
 def _plot(options: Options) -> None:
+    if options.file.suffix == ".toml":
+        _plot_structure(options)
+        return
     from ..files.places import claimed
     from ..plot import check_picture, pictured, save_picture
 

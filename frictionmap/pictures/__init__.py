@@ -16,7 +16,8 @@ panels       figures, panels, axes, legends
 second_axes  axes in hertz, newtons, millimetres in addition to ratios
 shapes       datasets in the form that pictures require
 features     natural frequencies and other features of a system on the frequency axis
-mode_shapes  modes of beams, plates and structures given by modes
+structures   structures with their points, contacts, loads and supports
+mode_shapes  modes of structures
 maps         regimes, boundaries and probabilities over frequency and friction
 curves       response curves over frequency
 motions      one steady state: in time, as phase portrait, as friction loop

@@ -1,4 +1,4 @@
-"""Modes of beams, plates and structures given by modes, with their points."""
+"""Modes of structures, with their points."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Unpack
@@ -17,6 +17,7 @@ from .palette import LINES
 from .panels import given_axes, grid_of_panels, halo
 from .shapes import check_options
 from .sizes import points
+from .structures import geometry_of
 
 if TYPE_CHECKING:
     from .panels import AxesArray
@@ -24,19 +25,24 @@ if TYPE_CHECKING:
 #: Places along a beam, and along each side of a plate.
 _PLACES, _ACROSS = 401, 81
 
+#: Points of a mode that have their names at the axis, at most.
+_NAMED = 12
+
 #: Modes that are drawn at most.
 _MOST = 24
 
 
 def _structure_of(given: object) -> Beam | Plate | Modes:
-    """What is drawn: of a system its modes."""
-    if isinstance(given, System) and isinstance(given.matrices, Modes):
-        return given.matrices
-    if isinstance(given, Beam | Plate | Modes):
-        return given
+    """What is drawn: of a system its beam, its plate, or its modes."""
+    found = geometry_of(given)
+    if found is not None:
+        return found
+    if isinstance(given, System):
+        modes, dofs = given.modes, given.dofs
+        names = dofs.written_labels or [f"{dofs.noun} {number}" for number in dofs.numbers]
+        return Modes(modes.w, 0.0, modes.phi, names, source="masses without friction")
     raise InputError(
-        "structure",
-        f"must be a frictionmap.Beam, Plate or Modes, or a system given by one; got {checks.one_line(given)}",
+        "structure", f"must be a frictionmap.System, Beam, Plate or Modes; got {checks.one_line(given)}"
     )
 
 
@@ -80,7 +86,8 @@ def _draw_points(ax: Axes, modes: Modes, k: int) -> None:
     ax.vlines(place, 0.0, values, color=LINES[0], linewidth=1.4)
     ax.plot(place, values, "o", color=LINES[4], markersize=4.0)
     ax.set_xlim(-0.5, len(place) - 0.5)
-    ax.set_xticks(place, modes.points)
+    shown = place[:: -(-len(place) // _NAMED)]
+    ax.set_xticks(shown, [modes.points[k] for k in shown])
     ax.set_xlabel("point")
     ax.set_ylabel("shape")
 
@@ -94,6 +101,13 @@ def _name_point(ax: Axes, name: str, x: float, y: float, below: bool = False) ->
     )  # fmt: skip
 
 
+def _frequency_words(structure: object, frequency: float) -> str:
+    """The natural frequency of a mode: of masses a frequency ratio, else in the unit of the modes."""
+    if isinstance(structure, System) and geometry_of(structure) is None:
+        return f"$r$ = {frequency:.5g}"
+    return f"frequency over $2\\pi$ {frequency / (2.0 * np.pi):.5g}"
+
+
 @with_options
 def plot_modes(
     structure: Beam | Plate | Modes | System,
@@ -101,12 +115,12 @@ def plot_modes(
     count: int = 4,
     **options: Unpack[FigureOptions],
 ) -> "AxesArray":
-    """Draw the first elastic modes of a beam, a plate, or of any structure at its points.
+    """Draw the first elastic modes of a beam, a plate, or of any structure at its points or masses.
 
     Parameters
     ----------
     structure : Beam, Plate, Modes or System
-        Of a system its modes.
+        Of a system its modes without friction.
     ax : array of matplotlib axes, optional
         As many axes as modes to draw into.
     count : int
@@ -146,6 +160,6 @@ def plot_modes(
         else:
             _draw_points(one, found, k)
         frequency = found.frequencies[k]
-        words = f"mode {k + 1}, frequency over $2\\pi$ {frequency / (2.0 * np.pi):.5g}"
+        words = f"mode {k + 1}, {_frequency_words(structure, frequency)}"
         one.set_title(words, fontsize=points(10.0, "axes.titlesize"))
     return axes

@@ -63,6 +63,7 @@ class Modes:
     source: str = ""
     imaginary: float = 0.0  # largest part of a complex shape that was left out
     optional: bool = False  # whether the residual may be left out where contacts are rigid
+    geometry: Any = None  # the beam or plate that has them, for pictures
 
     def __post_init__(self) -> None:
         w = checks.array(self.w, "modes: w")

@@ -453,4 +453,5 @@ def _as_modes(owner: Beam | Plate) -> Modes:
         None if owner.with_residual is False else owner.residual,
         source=owner.describe(),
         optional=owner.with_residual is None,
+        geometry=owner,
     )

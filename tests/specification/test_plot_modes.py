@@ -39,10 +39,23 @@ def test_modes_of_a_plate_and_of_points():
     assert [one.get_text() for one in axes[0].get_xticklabels()] == ["a", "b"]
 
 
+def test_modes_of_masses_and_of_a_beam_in_a_system():
+    chain = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1])
+    first, second = fm.plot_modes(chain)
+    values = [one.get_ydata() for ax in (first, second) for one in ax.lines if one.get_marker() == "o"]
+    golden = 0.5 * (1.0 + np.sqrt(5.0))
+    np.testing.assert_allclose([x2 / x1 for x1, x2 in values], [golden, -1.0 / golden])
+    assert f"{1.0 / golden:.5g}" in first.get_title()
+    beam = fm.Beam("clamped-free", **UNIT, points={"tip": 2.0}, modes=2)
+    system = fm.System(modes=beam, contact_masses=["tip"], contact_stiffness=1.0, load_mass="tip")
+    lines = [fm.plot_modes(one)[1].lines[1].get_ydata() for one in (beam, system)]
+    np.testing.assert_array_equal(*lines)
+
+
 def test_refusals():
     beam = fm.Beam("clamped-free", **UNIT, points={"tip": 2.0})
-    with pytest.raises(InputError, match=r"structure must be a frictionmap\.Beam, Plate or Modes"):
-        fm.plot_modes(fm.System())
+    with pytest.raises(InputError, match=r"structure must be a frictionmap\.System, Beam, Plate or Modes"):
+        fm.plot_modes("chain")
     with pytest.raises(InputError, match="ax must be 2 axes, one for each mode; got 1"):
         fm.plot_modes(beam, Figure().subplots(), count=2)
     with pytest.raises(InputError, match="count must be >= 1; got 0"):

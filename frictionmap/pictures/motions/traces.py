@@ -42,7 +42,7 @@ class Trace(NamedTuple):
 
 
 def is_at_rest(values: np.ndarray) -> bool:
-    """Whether a motion is constant but for rounding errors."""
+    """Whether a motion is constant except for rounding errors."""
     low, high = float(values.min()), float(values.max())
     return 0.56 * (high - low) <= ROUNDING * max(1.0, abs(low), abs(high))
 

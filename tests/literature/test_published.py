@@ -41,3 +41,19 @@ def test_asymmetric_motions_of_csernak_stepan_and_shaw(shown):
 
 def test_the_least_peak_of_griffin(shown):
     assert shown["peaks"].min().item() == pytest.approx(np.pi, rel=0.1)
+
+
+@pytest.mark.slow
+def test_plates_of_leissa():
+    """All 21 sets of edges: exact values where he has them, else upper bounds by 36 functions."""
+    names = runpy.run_path(str(ROOT / "docs/gallery/plot_14_plates.py"))
+    plt.close("all")
+    assert len({frozenset((name, name[::-1])) for name in names["LEISSA"]}) == len(names["plates"]) == 21
+    for letters, one in names["plates"].items():
+        own, printed = one.frequencies, np.array(names["LEISSA"][letters])
+        if letters in names["EXACT"]:
+            np.testing.assert_allclose(printed, own, rtol=0.0, atol=5.1e-5)
+        else:
+            assert (printed >= own).all()
+            assert (printed <= 1.01 * own).all()
+        assert one.frequency_error.max() < 1e-5

@@ -15,7 +15,7 @@ import frictionmap as fm
 GALLERY = sorted((ROOT / "docs/gallery").glob("plot_*.py"))
 
 #: Those whose figures are not of the thesis.
-OWN = ("plot_11_plate", "plot_12_for_papers", "plot_13_published")
+OWN = ("plot_11_plate", "plot_12_for_papers", "plot_13_published", "plot_14_plates")
 
 #: Values kept of an axis of a map, so that a script runs in seconds.
 KEPT = 6

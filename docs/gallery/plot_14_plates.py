@@ -2,11 +2,11 @@
 Plates: Leissa's table
 ======================
 
-The edges of a rectangular plate can be clamped (C), simply supported (S) or free (F) in 21 ways. Leissa (1973)
-tabulated the first six natural frequencies of all of them, by exact equations for the six sets with two
-opposite supported edges, and by Ritz's method for the others. Here `fm.Plate` computes the table again, for
-square plates with a Poisson's ratio of 0.3. Frequencies are over sqrt(D/(rho h))/a^2. The letters are the edges
-x = 0, y = 0, x = a, y = a.
+The edges of a rectangular plate can be clamped (C), simply supported (S) or free (F) in 21 ways. Leissa
+(1973) tabulated the first six natural frequencies of all of them, by exact equations for the six sets with
+two opposite supported edges, and by Ritz's method for the others. Here `fm.Plate` computes the table again,
+for square plates with a Poisson's ratio of 0.3. Frequencies are over sqrt(D/(rho h))/a^2. The letters are
+the edges x = 0, y = 0, x = a, y = a.
 """
 
 import matplotlib.pyplot as plt

@@ -81,7 +81,9 @@ def _trace(ds: xr.Dataset, number: int, colour: str, label: str) -> Trace:
     if normal is not None and not np.isfinite(normal).any():
         normal = None
     stops, friction = _stops(ds, number), ds["friction"].values
-    before = np.searchsorted(ds["tau"].values, stops[0]) - 1  # of a stop at the start it is the last sample
+    before = np.empty(0, dtype=int)
+    if stops[0].size:  # motions under records have no phase, and no such events
+        before = np.searchsorted(ds["tau"].values, stops[0]) - 1  # of a stop at the start the last sample
     return Trace(
         number, label, colour, at_rest(ds["z"].values), friction, stuck, elastic, stops, opened, normal,
         friction[before],

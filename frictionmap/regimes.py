@@ -46,6 +46,7 @@ __all__ = [
     "PERMANENT_STICKING",
     "QUASI_STATIC",
     "REACHABLE",
+    "REACHABLE_ON_BELTS",
     "REGIMES",
     "RESOLVED",
     "SLIDING_LIMIT_KINDS",
@@ -155,6 +156,9 @@ REACHABLE = (
     Code(2, "stick_slip", "the contact may slide and stop"),
     Code(4, "continuous", "the contact may slide without stopping"),
 )
+
+#: A further bit of `also_reachable`, of contacts on belts.
+REACHABLE_ON_BELTS = (*REACHABLE, Code(8, "one_way_sliding", "the contact may slide one way"))
 
 ORIGINS = (
     Code(CLOSED_FORM, "closed_form", "decided by a closed form"),

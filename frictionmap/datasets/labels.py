@@ -224,6 +224,7 @@ CELL_VARIABLES = {
         flags="flag_masks",
         unresolved=0,
         needs="coexistence",
+        also=regimes.REACHABLE_ON_BELTS[len(regimes.REACHABLE) :],
     ),
     "sliding_limit": Label(
         np.float64,

@@ -63,7 +63,9 @@ def label_variable(name: str, values: np.ndarray | float, what: str = "") -> xr.
     what : kind of its dataset, see `labels_of`
     """
     label = labels_of(what)[name]
-    if label.also and np.size(values) and np.max(values) > label.codes[-1].value:
+    codes = [code.value for code in label.codes]
+    most = sum(codes) if label.flags == "flag_masks" else codes[-1] if codes else np.inf
+    if label.also and np.size(values) and np.max(values) > most:
         label = label._replace(codes=(*label.codes, *label.also))
     attrs = attributes(label)
     if label.dtype is np.str_:

@@ -1,6 +1,7 @@
 """Maps and boundaries of general systems as labelled variables."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -16,7 +17,7 @@ from ..model.system import System
 from .boundaries import Boundaries, find_boundaries
 from .maps import solve_cells
 from .observed import wants_further
-from .outputs import COUNTERPARTS, TABLE, depends_on_places, is_of_masses, is_wanted, output_values
+from .outputs import COUNTERPARTS, OF_STARTS, TABLE, depends_on_places, is_of_masses, is_wanted, output_values
 from .problem import general_of
 
 
@@ -124,7 +125,12 @@ def cell_arrays(
     cells = solve_cells(
         system, axes, limits.beta_stick, solver, threads, progress, watch, masses, placed, further
     )
-    return {name: output_values(name, system, cells) for name in names}, limits
+    found = {name: output_values(name, system, cells) for name in names}
+    if OF_STARTS in names and not cells.unique.all():
+        other = replace(solver, start="rest" if solver.start == "moving" else "moving")
+        more = solve_cells(system, axes, limits.beta_stick, other, threads, None, watch, False, False)
+        found[OF_STARTS] |= output_values(OF_STARTS, system, more)
+    return found, limits
 
 
 def general_map(

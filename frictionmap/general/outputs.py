@@ -104,6 +104,12 @@ def _belts(general: ContactSystem) -> bool:
     return any(group.first.belt for group in general.groups)
 
 
+def _bits(solved: Solved) -> np.ndarray:
+    """Bits of the regimes of one start; those of others are added to them."""
+    regime = solved.cells.regime
+    return np.where(regime >= 0, 1 << np.maximum(regime, 0), 0)
+
+
 TABLE = {
     "regime": Output(_cell("regime")),
     "stops_per_cycle": Output(_number("stops"), (RIGID,), moving=True),
@@ -116,6 +122,7 @@ TABLE = {
     "stops_per_cycle_error": Output(_number("stops_error"), (RIGID,), moving=True),
     "stuck_fraction_error": Output(_number("stuck_error"), (RIGID,)),
     "multiplier": Output(_cell("multiplier")),
+    "also_reachable": Output(_bits),
     "amplitude": Output(lambda s: _modulus(s.masses), placed=_ALL),
     "sliding_distance": Output(_number("distance")),
     # rounding may be negative in a contact that hardly slides
@@ -144,6 +151,9 @@ TABLE = {
     "segment_fraction": Output(_shares_of_segments, wanted=_laws),
     "unique": Output(_cell("unique"), wanted=_laws),
 }
+
+#: The output of several starts: a response is of one.
+OF_STARTS = "also_reachable"
 
 #: Outputs of elastic contacts that take the place of those of rigid ones.
 COUNTERPARTS = {"stops_per_cycle": "slips_per_cycle", "stuck_fraction": "elastic_fraction"}

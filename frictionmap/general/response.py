@@ -24,7 +24,7 @@ from .dataset import (
 )
 from .loops import undetermined_forces
 from .observed import wants_further
-from .outputs import TABLE, is_wanted, output_values
+from .outputs import OF_STARTS, TABLE, is_wanted, output_values
 from .problem import general_of, static_offset
 from .slopes import one_way_speed
 from .steps import Steps, steps_of
@@ -94,7 +94,7 @@ def scalars(system: System, steps: Steps, further: Collection[str] = ()) -> dict
 
     further : names of those among `RECORDED` that are wanted
     """
-    names = [name for name in TABLE if name not in RECORDED or name in further]
+    names = [name for name in TABLE if (name not in RECORDED or name in further) and name != OF_STARTS]
     return {name: output_values(name, system, steps.cells)[0, 0, 0] for name in names}
 
 

@@ -119,3 +119,25 @@ def marched_signal(truth, order, time, low_pass=None, ac_coupling=None):
         shown[inside] = output(states, push, moving) - (states[4] if ac_coupling else 0.0)
         begin, state = run.t[-1], run.y[:, -1] * [1.0, 0.0, 1.0, 1.0, 1.0]
     return shown
+
+
+def simulate_falling(time, omega, zeta, friction, slope, first=9.0):
+    """Places of a mass let go at `first` under friction x_F (1 + slope V) and damping, by a Runge-Kutta method."""
+    place, y, begin = np.full(time.size, np.nan), [first, 0.0], 0.0
+    while begin < time[-1] and abs(y[0]) > friction:
+        side = -np.sign(y[0])
+
+        def rates(_, y, side=side):
+            pull = side * friction * (1.0 + slope * abs(y[1]))
+            return [y[1], -(omega**2) * (y[0] + pull) - 2.0 * zeta * omega * y[1]]
+
+        def turn(_, y, side=side):
+            return side * y[1]
+
+        turn.terminal, turn.direction = True, -1.0
+        found = solve_ivp(rates, (begin, time[-1]), y, rtol=1e-9, atol=1e-11, events=turn, dense_output=True,
+                          first_step=1e-5)  # fmt: skip
+        inside = (time >= begin) & (time <= found.t[-1])
+        place[inside] = found.sol(time[inside])[0]
+        begin, y = found.t[-1], [found.y[0, -1], 0.0]
+    return np.where(np.isnan(place), y[0], place)

@@ -168,7 +168,9 @@ def refuse_static(general: ContactSystem, mu: np.ndarray) -> None:
     """Refuse mu > 1 with elastic contacts alone."""
     if general.elastic.all() and (mu != 1.0).any():
         raise InputError(
-            "mu", f"must be 1 with contact_stiffness: the spring would jump at break-away; got {mu.max():g}"
+            "mu",
+            "must be 1 with contact_stiffness: the spring would jump at break-away; omit contact_stiffness, "
+            f"or put a small mass between the spring and a rigid contact; got {mu.max():g}",
         )
 
 

@@ -10,6 +10,7 @@ electronics  the unit of a record, filters that it passed, samples that they spo
 problem      least squares of a record on the exact decay
 starts       initial estimates of the fit, for each number of half cycles before rest
 fit          the decay nearest to all samples
+falling      a warning of friction that falls with the speed, and what it looks like
 wander       a slow wander of the measured zero
 rounding     errors that a coarse converter makes, alike in samples at one place
 errors       errors where noise is correlated, or hides the number of half cycles

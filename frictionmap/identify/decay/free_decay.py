@@ -25,6 +25,7 @@ from ..statistics.robust import LOSSES
 from .checks import check_identifiable, check_misfit, checked_turning_points
 from .electronics import Electronics, Signal, kept_samples, points_of_motion, signal_of
 from .errors import decay_errors, decay_solution
+from .falling import falling_friction
 from .fit import DecayFit, fit_decay, noise_variance
 from .motion import PARAMETERS
 from .problem import DRIFT, OFFSET, X_F, ZETA, Record
@@ -143,6 +144,9 @@ def free_decay(
     A_j <= mu x_F.  The number of half cycles before rest is an unknown of the fit.  The velocity or the
     acceleration of the exact motion is fitted to what was measured, which is not integrated; the states of
     filters at the first sample are further unknowns.
+
+    A slope of friction over the speed is damping in a decay: F (1 + a V) adds x_F omega_n a/2 to zeta.  Where
+    zeta is 0 and a negative sum fits the record better, a warning says by how much friction falls at least.
     """
     signal = signal_of(unit, electronics)
     if not isinstance(drift, bool):
@@ -182,7 +186,8 @@ def free_decay(
         words = {"long_name": "samples left out beside turning points"}
         ds["samples_left_out"] = xr.Variable((), np.int32(good.sum() - t.size), words)
     ds.attrs["title"] = "Free decay"
-    ds.attrs["warnings"] = "; ".join(_warnings(times, good, searched, found, signal))
+    words = falling_friction(record, points, bool(fit.solution.at_bound[ZETA]), signal.length)
+    ds.attrs["warnings"] = "; ".join([*words, *_warnings(times, good, searched, found, signal)])
     ds.attrs |= signal.attributes
     return ds
 

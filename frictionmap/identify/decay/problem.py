@@ -49,6 +49,7 @@ class Record(NamedTuple):
     weights: np.ndarray | None = None  # (samples,) of the residuals, below 1 where rounding errors are alike
     sensor: Sensor | None = None  # None: displacements as they are
     transients: np.ndarray | None = None  # shape (samples, states): of the filters of the sensor
+    may_fall: bool = False  # whether zeta may be negative: friction that falls with the speed takes from it
 
     def thinned(self, most: int) -> "Record":
         """The record with no more samples than `most`, or a few."""
@@ -172,5 +173,5 @@ def plain_problem(record: Record, n: int, start: np.ndarray) -> Problem:
     lowest[0], highest[0] = start[0] * (1.0 - _FREQUENCY_RANGE), start[0] * (1.0 + _FREQUENCY_RANGE)
     lowest[ZETA], highest[ZETA] = _ZETA_RANGE
     floor = np.full(start.size, -np.inf)
-    floor[[ZETA, X_F]] = 0.0
+    floor[[ZETA, X_F]] = _ZETA_RANGE[0] if record.may_fall else 0.0, 0.0
     return Problem(residuals, record.free, floor, lowest, highest)

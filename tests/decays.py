@@ -122,7 +122,7 @@ def marched_signal(truth, order, time, low_pass=None, ac_coupling=None):
 
 
 def simulate_falling(time, omega, zeta, friction, slope, first=9.0):
-    """Places of a mass let go at `first` under friction x_F (1 + slope V) and damping, by a Runge-Kutta method."""
+    """Places of a mass let go at `first` under friction x_F (1 + slope V) and damping: Runge-Kutta steps."""
     place, y, begin = np.full(time.size, np.nan), [first, 0.0], 0.0
     while begin < time[-1] and abs(y[0]) > friction:
         side = -np.sign(y[0])

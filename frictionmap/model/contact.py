@@ -134,8 +134,8 @@ class Contact(Shown):
         if self.stiffness is not None and self.mu not in (None, 1.0):
             raise InputError(
                 "mu",
-                "must be 1 for a contact with stiffness: its spring would jump at break-away; omit it, or put "
-                f"a small mass between the spring and a rigid contact; got {self.mu:g}",
+                "must be 1 for a contact with stiffness: its spring would jump at break-away; omit it, or "
+                f"put a small mass between the spring and a rigid contact; got {self.mu:g}",
             )
         if self.law is not None or self.law_file is not None:
             self._check_law()

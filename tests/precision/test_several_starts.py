@@ -1,6 +1,5 @@
 """`also_reachable` of systems of the general engine: the regimes of both starts."""
 
-import numpy as np
 import pytest
 
 import frictionmap as fm

@@ -32,10 +32,10 @@ def falling_friction(record: Record, points: TurningPoints, at_bound: bool, unit
     growth = (without.solution.sum - fit.solution.sum) / noise_variance(steady, fit)
     if fit.solution.values[ZETA] >= 0.0 or growth <= FOUND**2:
         return []
-    return [_in_words(fit.decay, unit)]
+    return [describe_fall(fit.decay, unit)]
 
 
-def _in_words(decay: Decay, unit: str) -> str:
+def describe_fall(decay: Decay, unit: str) -> str:
     """The slope of the fall, as far as a decay shows it."""
     omega = 2.0 * np.pi * decay.f_n
     slope = (

@@ -186,8 +186,8 @@ def free_decay(
         words = {"long_name": "samples left out beside turning points"}
         ds["samples_left_out"] = xr.Variable((), np.int32(good.sum() - t.size), words)
     ds.attrs["title"] = "Free decay"
-    words = falling_friction(record, points, bool(fit.solution.at_bound[ZETA]), signal.length)
-    ds.attrs["warnings"] = "; ".join([*words, *_warnings(times, good, searched, found, signal)])
+    falls = falling_friction(record, points, bool(fit.solution.at_bound[ZETA]), signal.length)
+    ds.attrs["warnings"] = "; ".join([*falls, *_warnings(times, good, searched, found, signal)])
     ds.attrs |= signal.attributes
     return ds
 

@@ -303,7 +303,7 @@ def test_refusals(keys, message):
 
 
 NOT_OFFERED = [
-    (lambda s: fm.sweep(s, [1.0], [0.1], outputs=["also_reachable"]), "cannot compute also_reachable"),
+    (lambda s: fm.sweep(s, [1.0], [0.1], outputs=["sliding_limit"]), "cannot compute sliding_limit"),
     (lambda s: fm.curves(s, [1.0], [0.1], quantities=["distortion"]), "cannot compute distortion"),
     (lambda s: fm.continuous_motion(s, 1.0, 0.1), "cannot compute the continuous motion"),
     (lambda s: fm.features.peak_thresholds(s), "cannot compute peak thresholds"),

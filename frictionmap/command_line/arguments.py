@@ -45,6 +45,13 @@ _TEMPLATES = {
     "belt": "a mass on a belt",
     "design": "one mass, with design questions",
     "history": "motions in time under a pulse, and its spectrum",
+    "law": "friction over speed",
+    "squeal": "a mass on a belt without a load",
+    "normal": "a contact whose normal force moves, and that opens",
+    "backlash": "a spring with backlash",
+    "modes": "a structure given by its modes",
+    "beam": "a beam with a contact",
+    "ring": "a bladed disk: a ring of sectors",
 }
 
 #: Shells that shtab knows; repeated here as the above, and compared by the same test.

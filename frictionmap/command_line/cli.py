@@ -125,14 +125,16 @@ def _fill_cells(
 ) -> None:
     """Compute a grid of cells with progress, write it, and print a summary."""
     from .._kernels.compiler.notices import listening
-    from ..files.summary import describe_causes, describe_map, describe_reduction
+    from ..files.summary import describe_causes, describe_locking, describe_map, describe_reduction
     from .progress import Progress
 
     with Progress(what, options.quiet) as progress, listening(progress.compiling):
         ds = run(progress)
         output.fill(_finish(ds, config, options), lambda size: progress.writing(output.path, size))
     first = f"{describe_map(ds)} in {progress.took}"
-    _report(options, output, first, *describe_causes(ds), *describe_reduction(ds))
+    warned = [*describe_causes(ds), *describe_locking(ds), *describe_reduction(ds)]
+    comment = [f"comment: {ds.attrs['comment']}"] if ds.attrs.get("comment") else []
+    _report(options, output, first, *warned, *comment)
 
 
 def _cost(options: Options, config: "Config") -> str:
@@ -175,7 +177,7 @@ def _belt_boundaries(options: Options, config: "Config", output: "Output") -> No
 
 
 def _response(options: Options, config: "Config", output: "Output") -> None:
-    from ..files.summary import describe_response
+    from ..files.summary import describe_locking, describe_response
     from ..steady.response import response
 
     mu = _one_mu(config) if options.mu is None else options.mu
@@ -186,7 +188,7 @@ def _response(options: Options, config: "Config", output: "Output") -> None:
         raise InputError("--r must be given, such as --r 0.5; got nothing")
     ds = response(config.system, options.r, options.beta, mu, solver=config.solver, units=config.units)
     output.fill(_finish(ds, config, options))
-    _report(options, output, describe_response(ds))
+    _report(options, output, describe_response(ds), *describe_locking(ds))
 
 
 def _belt_response(options: Options, config: "Config", output: "Output", mu: float) -> None:
@@ -666,16 +668,20 @@ def _init(options: Options) -> None:
         texts = {path: text, path.parent / f"{options.rig}.csv": data}
         then = f"frictionmap identify {path}"
     else:
+        from ..files.special import SPECIAL, special_configuration
         from ..files.template import short_configuration, short_motion, starting_configuration
 
         if options.full:
             text = starting_configuration(path.stem, options.contact or CONTACTS[0], options.units)
         else:
             kind = options.contact or options.template or CONTACTS[0]
-            write = short_motion if kind == "history" else functools.partial(short_configuration, kind=kind)
+            one = special_configuration if kind in SPECIAL else short_configuration
+            write = short_motion if kind == "history" else functools.partial(one, kind=kind)
             text = write(path.stem, in_units=not options.ratios)
         texts = {path: text}
         then = f"frictionmap explore {path}, or frictionmap map {path} && frictionmap plot {path.stem}.nc"
+        if options.template in SPECIAL:  # the page does not show all of them
+            then = f"frictionmap map {path} && frictionmap plot {path.stem}.nc"
         if options.template == "history":
             then = f"frictionmap history {path} && frictionmap plot {path.stem}-history.nc"
     with contextlib.ExitStack() as places:

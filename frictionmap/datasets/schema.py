@@ -31,7 +31,7 @@ from .motion_labels import TIMES, motion_labels
 #: Global attributes that are text, if present.
 TEXTS = (
     "title", "system", "excitation", "source", "history", "references", "config", "reduction",
-    "reduction_check", "decoupling", "modes",
+    "reduction_check", "decoupling", "modes", "comment",
 )  # fmt: skip
 
 

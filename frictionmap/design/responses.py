@@ -19,6 +19,10 @@ from .watching import current_watch, look
 ResponseQuantity = Literal["amplitude", "first_harmonic", "contact", "transmitted_force"]
 QUANTITIES: tuple[str, ...] = get_args(ResponseQuantity)
 
+#: Periods that motions of contacts that open and of gaps are followed at most: many of them never repeat, and
+#: what has not come close to a cycle by then is taken for one of these.
+_PERIODS = 500
+
 
 class Response(NamedTuple):
     """A quantity of the steady state, over P/k1 (Y) or, of a force, over P."""
@@ -79,7 +83,8 @@ class Responses:
         self._wanted = Wanted(response.quantity, row, response.contact - 1)
         self._engine.check_static(np.array([mu]))
         starts: Sequence[Start] = ("rest", "moving") if _several_states(system, mu) else ("rest",)
-        self._solvers = [Solver(start=start) for start in starts]
+        cycles = _PERIODS if system.contact_system.has_phases else Solver().cycles
+        self._solvers = [Solver(start=start, cycles=cycles) for start in starts]
         # with a law, less friction than this needs one start
         self._unique = unique_friction(system, mu) if system.contact_system.has_law else -1.0
 

@@ -9,6 +9,7 @@ variants     CSV files of numbers that change together, for further axes
 config       configurations (TOML): read, overridden, checked key by key
 json_schema  the keys as JSON Schema, for editors
 template     commented configurations for a start
+special      short configurations of belts without a load, contacts that open, modes, beams, rings
 places       output files: reserved before the computation, written completely or not at all
 storage      datasets as NetCDF files
 checksums    checksums of stores: of their chunks, and of the files that describe their arrays

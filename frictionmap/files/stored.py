@@ -3,7 +3,6 @@
 import xarray as xr
 
 from ..errors import InputError
-from ..model.contact import checked_contacts
 from ..model.general import ContactSystem
 from ..model.settings import Solver
 from ..model.system import System
@@ -31,12 +30,14 @@ def stored_contacts(ds: xr.Dataset) -> ContactSystem | None:
 def has_equal_friction(ds: xr.Dataset, mu: float) -> bool:
     """Whether static and kinetic friction of every contact of a dataset are equal at this mu of its grid.
 
-    The list of contacts says so, also where the matrices are in a file of their own.
+    The list of contacts says so, also where the matrices are in a file of their own; its numbers may have
+    units.
     """
     contacts = (_table(ds, "system") or {}).get("contacts")
     if contacts is None:
         return mu == 1.0
-    return all(one.static_ratio(mu) == 1.0 for one in checked_contacts(contacts))
+    rigid = [one for one in contacts if one.get("stiffness") is None]
+    return all(one.get("mu", mu) == 1.0 for one in rigid)
 
 
 def stored_excitation(ds: xr.Dataset) -> str | None:

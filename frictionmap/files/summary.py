@@ -50,6 +50,18 @@ def describe_causes(ds: xr.Dataset) -> list[str]:
     return in_causes(_counts(ds["status"], regimes.STATUSES))
 
 
+def describe_locking(ds: xr.Dataset) -> list[str]:
+    """Describe contacts whose friction holds any load."""
+    if "self_locking" not in ds or not (ds["self_locking"].values == 1).any():
+        return []
+    locks = np.ravel(ds["self_locking"].values == 1)
+    mu = np.ravel(ds["mu"].values) if "mu" in ds.coords else np.empty(0)
+    where = "" if locks.all() or mu.size != locks.size else f" with mu = {_numbers(mu[locks])}"
+    return [
+        f"self-locking{where}: a constant force in the contact holds any load, and sliding one way diverges"
+    ]
+
+
 def describe_reduction(ds: xr.Dataset) -> list[str]:
     """Describe the effect of all modes, or many more, of a reduced structure."""
     found = ds.attrs.get("reduction_check")
@@ -163,7 +175,16 @@ def header_lines(ds: xr.Dataset, what: str) -> list[str]:
     """Title and kind, system, source, history."""
     texts = {name: _printable(ds.attrs.get(name, "")) for name in TEXTS}
     lines = [textwrap.shorten(texts["title"], _WIDTH - len(what) - 3, placeholder="...") + f" [{what}]"]
-    for name in ("system", "reduction", "reduction_check", "decoupling", "modes", "source", "history"):
+    for name in (
+        "system",
+        "reduction",
+        "reduction_check",
+        "decoupling",
+        "modes",
+        "comment",
+        "source",
+        "history",
+    ):
         if texts[name]:
             lines += _entry(name.replace("_", " "), texts[name])
     units = describe_scales(ds)
@@ -279,7 +300,7 @@ def _describe_results(ds: xr.Dataset, what: str) -> Iterator[str]:
     elif what == "response":
         yield describe_response(ds)
         yield from _motion(ds)
-    yield from (f"  {line}" for line in describe_causes(ds))
+    yield from (f"  {line}" for line in (*describe_causes(ds), *describe_locking(ds)))
     if what in ("map", "curves") and "stops_per_cycle" in ds:
         yield from _stops(ds["stops_per_cycle"].values)
 

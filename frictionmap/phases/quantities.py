@@ -164,7 +164,7 @@ TABLE: dict[str, Callable[[Solved], np.ndarray]] = {
     "contact_peak_to_peak": lambda solved: 2.0 * _half_range(solved.contacts),
     "contact_midpoint": lambda solved: _middle(solved.contacts),
     "sliding_distance": lambda solved: solved.cells.distance / solved.periods,
-    "work_friction": lambda solved: solved.cells.work / solved.periods,
+    "work_friction": lambda solved: np.maximum(solved.cells.work / solved.periods, 0.0),  # rounding
     "work_wall": lambda solved: solved.cells.belt_work / solved.periods,
     "amplitude": lambda solved: _largest(solved.masses),
     "peak_to_peak": lambda solved: 2.0 * _half_range(solved.masses),

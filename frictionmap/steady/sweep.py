@@ -175,6 +175,7 @@ def _study(
     dims = [axis.name for axis in variations.axes]
     variables: dict[str, xr.Variable] = {}
     coords = study_coordinates(variations)
+    comments: dict[str, None] = {}
     for done, point in enumerate(variations.points()):
         ds = regime_map(
             variations.at(point), grid, solver, threads, _progress_of_one(progress, done, count), watch
@@ -187,7 +188,16 @@ def _study(
             }
         for name, variable in ds.data_vars.items():
             variables[str(name)].values[point] = variable.values
-    return xr.Dataset(variables, coords)
+        comments |= dict.fromkeys(filter(None, [ds.attrs.get("comment")]))
+    found = xr.Dataset(variables, coords)
+    return found.assign_attrs(comment=_joined(list(comments))) if comments else found
+
+
+def _joined(comments: list[str]) -> str:
+    """The comments on several maps in one: the first, and how many others there are."""
+    others = len(comments) - 1
+    more = "" if not others else f" (and {others} more comment{'s' * (others > 1)} along the further axes)"
+    return comments[0] + more
 
 
 def _allocate(one: xr.Variable, dims: list[str], shape: tuple[int, ...]) -> xr.Variable:

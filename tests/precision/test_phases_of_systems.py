@@ -213,6 +213,12 @@ def test_stiff_impacts_are_named():
         system = fm.System(**B1, contacts=[{"stiffness": 3.0, "normal": normal}])
         ds = fm.sweep(system, [1.2], [0.2], cycles=200)
         assert ("makes impacts without loss" in ds.attrs.get("comment", "")) == expected
+    axes = {"contacts[1].normal.preload": [0.5, 500.0]}
+    normal = {"mass": 2, "stiffness": 1000.0, "friction": 0.4, "preload": 0.5}
+    study = fm.sweep(
+        fm.System(**B1, contacts=[{"stiffness": 3.0, "normal": normal}]), [1.2], [0.2], cycles=200, axes=axes
+    )
+    assert "makes impacts without loss" in study.attrs["comment"]
 
 
 @pytest.mark.parametrize(

@@ -37,6 +37,7 @@ from frictionmap.explorer.scene import scene_of
 from frictionmap.files.json_schema import map_schema
 from frictionmap.files.key import Key, whole
 from frictionmap.files.keys import GENERAL_KEYS, KEYS
+from frictionmap.files.special import SPECIAL, special_configuration
 from frictionmap.files.template import SHORT, short_configuration, starting_configuration
 from frictionmap.identify.parameters import Parameter
 from frictionmap.identify.rigs.configuration import KINDS, identify, load_rig
@@ -108,7 +109,40 @@ def test_every_template_runs_with_every_command(options, coarse, tmp_path, monke
 def test_templates_of_the_command_line_are_all_of_them():
     actions = subcommands(build_parser()).choices["init"]._actions
     kinds = {one.const for one in actions if one.dest == "template"}
-    assert {*CONTACTS, *kinds} == {*SHORT, "design", "history"}
+    assert {*CONTACTS, *kinds} == {*SHORT, *SPECIAL, "design", "history"}
+
+
+@pytest.mark.parametrize("numbers", ["--units", "--ratios"])
+@pytest.mark.parametrize("kind", SPECIAL)
+def test_special_templates_run_with_the_commands_that_they_name(kind, numbers, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", f"--{kind}", numbers, "--quiet"]) == 0
+    text = (tmp_path / "map.toml").read_text(encoding="utf-8")
+    tree = tomllib.loads(text)
+    SCHEMA.validate(tree)
+    assert len(text.splitlines()) <= 27
+    few = ["--set", "grid.beta.num=2", "--quiet"]
+    for key in ("r", "wall_speed"):
+        if key in tree["grid"]:
+            ends = [tree["grid"][key][end] for end in ("start", "stop")]
+            few += ["--set", f"grid.{key}={json.dumps(ends)}"]
+    commands = re.search("also (.*)$", text, re.MULTILINE)[1].split(", ")
+    for command in ("map", *commands):
+        more = [] if command == "design" else few
+        assert main([command, "map.toml", *more, "-o", f"{command}.nc"]) == 0, capsys.readouterr().err
+        if command != "boundaries" or kind not in ("law", "squeal"):  # these limits have no picture
+            assert main(["plot", f"{command}.nc", "--quiet"]) == 0, capsys.readouterr().err
+        assert main(["info", f"{command}.nc"]) == 0
+    cell = shlex.split(re.search("^# frictionmap response map.toml (.*)$", text, re.MULTILINE)[1])
+    assert main(["response", "map.toml", *cell, "--quiet"]) == 0, capsys.readouterr().err
+    assert main(["plot", "map-response.nc", "--quiet"]) == 0
+
+
+@pytest.mark.parametrize("kind", ["normal", "backlash", "ring"])
+def test_units_and_ratios_of_a_special_template_are_one_system(kind, tmp_path):
+    one, other = (loaded(tmp_path, special_configuration("map", kind, numbers)) for numbers in (True, False))
+    assert one.system == other.system
+    np.testing.assert_allclose(one.beta, other.beta, rtol=1e-15)
 
 
 @pytest.mark.parametrize("numbers", ["--units", "--ratios"])

@@ -420,6 +420,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     sub = command("identify", "friction, damping and natural frequency from measured data", text)
     _takes_config(sub, "RIG", "configuration of the measured data and the fit", "data.window=[0.5,4]")
+    _takes_verbose(sub, "also print all further results of the fit")
     text = (
         "Answer a design question: which friction gives the least peak, keeps a limit, avoids stops or holds "
         "the contact, or the margins of a working point; print the answer as a table; write NetCDF."
@@ -497,12 +498,22 @@ def _takes_files(command: Callable[[str, str, str], argparse.ArgumentParser]) ->
     _takes_output(sub, "OUT", text, _file_or_stream)
     _takes_choices(sub)
     _takes_over(sub, "write")
+    text = (
+        "CSV of a motion or of response curves with all variables, one row per point of all axes (default: "
+        "time, displacements and friction forces; regime, stops, amplitudes and phases per frequency)"
+    )
+    sub.add_argument("--all", action="store_true", dest="everything", help=text)
     _takes_info(command("info", "summary of a file", "Summarise the contents of a file on one screen."))
+
+
+def _takes_verbose(sub: argparse.ArgumentParser, text: str) -> None:
+    sub.add_argument("--verbose", action="store_true", help=text)
 
 
 def _takes_info(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("file", metavar="FILE", type=Path, help="file to read: FILE.nc, or a store FILE.zarr")
     _takes_choices(sub)
+    _takes_verbose(sub, "also list the meanings of all variables, the history and further results")
     text = "print the summary as JSON, for scripts: dimensions, ranges of axes, variables, numbers of cells"
     sub.add_argument("--json", action="store_true", help=text)
 

@@ -466,7 +466,7 @@ def _identify(options: Options) -> None:
     with claimed(path, options.overwrite, rig.files) as output:
         ds = identify(rig)
         output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
-    _report(options, output, rig.title, *describe_estimates(ds))
+    _report(options, output, rig.title, *describe_estimates(ds, options.verbose))
 
 
 def _design(options: Options) -> None:
@@ -545,7 +545,7 @@ def _follow_records(options: Options, task: "Task", what: str) -> None:
 def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None) -> "xr.Dataset":
     """Read the point of a file, or its shares over an axis, selected by the arguments.
 
-    only : the variables to read for a picture; by default all, without those of each contact
+    only : the variables to read for a picture; by default all
     """
     from ..files.reading import read
     from ..files.slices import parse_choices
@@ -553,7 +553,7 @@ def _chosen(options: Options, only: Mapping[str, Collection[str]] | None = None)
 
     choices = parse_choices(options.at)
     if options.over is None:
-        return read(options.file, only, choices, contacts=only is not None)
+        return read(options.file, only, choices, contacts=True)
     return read_shares(options.file, options.over, choices)
 
 
@@ -625,14 +625,14 @@ def _export(options: Options) -> None:
     from ..files.places import claimed
 
     if options.output == STREAM:
-        _print(csv_of(_chosen(options)).rstrip("\n"))
+        _print(csv_of(_chosen(options), options.everything).rstrip("\n"))
         return
     if options.output is not None:
         check_export(options.output)
     path = options.output or Path(f"{options.file.stem}.csv")
     with claimed(path, options.overwrite, [options.file]) as output:
         ds = _chosen(options)
-        output.fill(lambda scratch: write_export(ds, scratch, options.command_line))
+        output.fill(lambda scratch: write_export(ds, scratch, options.command_line, options.everything))
     if not options.quiet:
         _print(f"wrote {path}")
 
@@ -648,9 +648,9 @@ def _info(options: Options) -> None:
         with opened(options.file) as ds:
             _print(summary_json(choose(ds, parse_choices(options.at)) if options.at else ds))
     elif not options.at and is_study(options.file):
-        _print(describe_study(options.file))
+        _print(describe_study(options.file, options.verbose))
     else:
-        _print(describe_file(read(options.file, at=parse_choices(options.at))))
+        _print(describe_file(read(options.file, at=parse_choices(options.at)), options.verbose))
 
 
 def _init(options: Options) -> None:

@@ -24,6 +24,7 @@ stored       system, excitation and initial state of a dataset
 summary      summary of a file, in words
 in_json      summary of a file as JSON, for scripts
 studies      summaries of files with further axes, and of stores
+short_tables  one row per instant of a motion, or per frequency of response curves
 export       slices of files as NetCDF or as a table
 ===========  ===============================================================================
 """

@@ -1,6 +1,7 @@
 """Checks, standard form and summaries of datasets of estimates."""
 
-from collections.abc import Hashable
+import re
+from collections.abc import Hashable, Iterator
 
 import numpy as np
 import xarray as xr
@@ -11,6 +12,24 @@ from ..errors import InputError
 
 #: What a line of the table says itself.
 _SHOWN_ELSEWHERE = ("verdict", "residual_correlation", "error_inflation", "reduced_chi_square")
+
+#: Verdicts with which no estimate can be relied on.
+_FAILED = ("not_identified", "explained_otherwise", "not_explained")
+
+#: Parameters that a result begins with, the first kind that there is, and their symbols; none: their names.
+_HEADLINES = (
+    ("friction", "F"),
+    ("x_F(_.+)?", ""),
+    ("beta(_.+)?", ""),
+    ("f[1-9]", ""),
+    ("f_n|f_k1m1", ""),
+)
+
+#: Quantile of a normal deviate for 95 %.
+_NORMAL = 1.96
+
+#: Difference of both halves of an interval, over the larger one, up to which it is written as one number.
+_EVEN = 0.05
 
 #: Digits behind the point that can be read.
 _DECIMALS = 7
@@ -59,23 +78,114 @@ def _check_parameters(names: np.ndarray) -> None:
         raise InputError(f"parameter must be a list of different names; got {words}")
 
 
-def describe_estimates(ds: xr.Dataset) -> list[str]:
-    """Describe the estimates as a table with standard errors and intervals, then other results."""
+def describe_estimates(ds: xr.Dataset, verbose: bool = False) -> list[str]:
+    """Describe the result, warnings, and the estimates as a table; with `verbose` also other results."""
+    lines = [result_in_words(ds), *(f"warning: {words}" for words in warnings_of(ds)), *_missing(ds)]
+    lines = [*filter(None, lines), *_table(ds)]
+    return [*lines, *_further(ds)] if verbose else lines
+
+
+def _table(ds: xr.Dataset) -> list[str]:
+    """The estimates with standard errors and intervals."""
     rows = [("", "estimate", "std. error", "95 % interval", "unit")]
     rows += [_row(ds.sel(parameter=name)) for name in ds["parameter"].values]
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    lines = [
+    return [
         "  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True)).rstrip()
         for row in rows
     ]
+
+
+def _further(ds: xr.Dataset) -> list[str]:
+    """Results beside the parameters."""
     shown = {*_SHOWN_ELSEWHERE, *ds["parameter"].values.tolist()}
     singles = [name for name in ds.data_vars if name not in shown and _is_number(ds[name])]
-    lines += [
+    return [
         f"{name}  {float(ds[name]):.5g} {unit_in_words(ds[name].attrs.get('units', '1'))}".rstrip()
         for name in singles
     ]
-    lines += filter(None, [verdict_in_words(ds)])
-    return lines + [f"warning: {words}" for words in warnings_of(ds)]
+
+
+def result_in_words(ds: xr.Dataset) -> str:
+    """The friction with its 95 % interval, and the verdict; of a fit that fails the verdict alone."""
+    verdict = verdict_in_words(ds)
+    found = [] if _verdict_name(ds) in _FAILED else list(_friction(ds))
+    words = "; ".join(filter(None, (", ".join(found), verdict)))
+    return words[:1].upper() + words[1:] + "." * (not words.endswith(".")) if verdict and not found else words
+
+
+def _verdict_name(ds: xr.Dataset) -> str:
+    """The name of the verdict; empty if the file has none."""
+    names = str(ds["verdict"].attrs.get("flag_meanings", "")).split() if "verdict" in ds else []
+    return names[int(ds["verdict"])] if names and int(ds["verdict"]) < len(names) else ""
+
+
+def _friction(ds: xr.Dataset) -> Iterator[str]:
+    """The friction forces, or in their place F/k, or friction ratios, with 95 % intervals.
+
+    Without any of them it is the frequencies.
+    """
+    names = [str(name) for name in ds["parameter"].values]
+    forces = [name for name in ds.data_vars if re.fullmatch(r"friction_force(_(?!standard)\w+)?", str(name))]
+    forces = [str(name) for name in forces if not str(name).endswith("_standard_error")]
+    if forces:
+        for name in forces:
+            label = name.removeprefix("friction_force")
+            length = f"x_F{label}"
+            unit = unit_in_words(ds[name].attrs.get("units", "1"))
+            if length in names and float(ds["estimate"].sel(parameter=length)) > 0.0:
+                factor = float(ds[name]) / float(ds["estimate"].sel(parameter=length))
+                yield _with_interval(f"F{label}", ds.sel(parameter=length), unit, factor)
+            elif f"{name}_standard_error" in ds:
+                half = _NORMAL * float(ds[f"{name}_standard_error"])
+                yield f"F{label} = {_rounded_to(float(ds[name]), half)} {unit} (95 %)"
+            else:
+                yield f"F{label} = {float(ds[name]):.4g} {unit}"
+        return
+    for pattern, symbol in _HEADLINES:
+        chosen = [name for name in names if re.fullmatch(pattern, name)]
+        if chosen:
+            for name in chosen:
+                one = ds.sel(parameter=name)
+                unit = unit_in_words(str(one["unit"].values))
+                yield _with_interval(symbol or name, one, unit)
+            return
+
+
+def _with_interval(name: str, one: xr.Dataset, unit: str, factor: float = 1.0) -> str:
+    """A parameter times a factor, with its 95 % interval: half its width if it is even."""
+    value, lower, upper = (factor * float(one[key]) for key in ("estimate", "lower", "upper"))
+    if one["known"]:
+        return f"{name} = {value:.6g} {unit}".rstrip() + " (held)"
+    if np.isinf(upper):
+        return f"{name} >= {lower:.4g} {unit}".rstrip() + " (95 %)"
+    below, above = value - lower, upper - value
+    if not one["at_bound"] and abs(above - below) <= _EVEN * max(above, below):
+        return f"{name} = {_rounded_to(value, 0.5 * (above + below))} {unit}".rstrip() + " (95 %)"
+    return f"{name} = {value:.4g} {unit}".rstrip() + f" (95 %: {lower:.4g} to {upper:.4g})"
+
+
+def _rounded_to(value: float, half: float) -> str:
+    """A value with half the width of its interval, both to the second digit of that."""
+    return _format_to_error(value, half).replace("\u00b1", "+-")
+
+
+def _missing(ds: xr.Dataset) -> list[str]:
+    """Name the key that would give the friction in newtons."""
+    names = {*(str(name) for name in ds["parameter"].values), *(str(name) for name in ds.data_vars)}
+    lengths = [name for name in names if re.fullmatch(r"x_F(_(?!standard)\w+)?", name)]
+    if not lengths or any(name.startswith("friction_force") for name in names) or "stiffness" in names:
+        return []
+    if not all(_unit_of(ds, name) == "mm" for name in lengths if not name.endswith("_standard_error")):
+        return []
+    return ["known.stiffness (N/m) is missing: with it the friction force F = k x_F is stated in newtons"]
+
+
+def _unit_of(ds: xr.Dataset, name: str) -> str:
+    """Unit of a parameter, or of a number beside them."""
+    if name in ds.data_vars:
+        return str(ds[name].attrs.get("units", "1"))
+    return str(ds["unit"].sel(parameter=name).values)
 
 
 def _row(one: xr.Dataset) -> tuple[str, str, str, str, str]:

@@ -8,11 +8,12 @@ import xarray as xr
 
 from .. import checks
 from ..datasets.estimate_labels import OF_PARAMETERS
-from ..datasets.labels import COORDINATES, LABELS
+from ..datasets.labels import COORDINATES
 from ..datasets.schema import kind
 from ..errors import InputError
 from .belts import belt_table
 from .motions import table_of
+from .short_tables import decode_flags, short_table
 from .storage import write_netcdf
 
 FORMATS = (".nc", ".csv")
@@ -24,26 +25,32 @@ def check_export(path: Path) -> None:
         raise InputError(f"-o must end in {' or '.join(FORMATS)}; got {path}")
 
 
-def write_export(ds: xr.Dataset, path: Path, command: str = "") -> None:
+def write_export(ds: xr.Dataset, path: Path, command: str = "", everything: bool = False) -> None:
     """Write a dataset as NetCDF or as `csv_of` returns it."""
     if path.suffix.lower() == ".nc":
         write_netcdf(ds, path, command)
     else:
-        _table(ds).to_csv(path)
+        _table(ds, everything).to_csv(path)
 
 
-def csv_of(ds: xr.Dataset) -> str:
-    """Return a dataset as CSV, with the names of codes."""
-    return str(_table(ds).to_csv(lineterminator="\n"))
+def csv_of(ds: xr.Dataset, everything: bool = False) -> str:
+    """Return a dataset as CSV, with the names of codes.
+
+    everything : all variables of motions and response curves, in place of their short tables
+    """
+    return str(_table(ds, everything).to_csv(lineterminator="\n"))
 
 
-def _table(ds: xr.Dataset) -> Any:
-    """Data frame with a row for every point of all axes of a dataset.
+def _table(ds: xr.Dataset, everything: bool = False) -> Any:
+    """Data frame: of motions and response curves a short one, else a row for every point of all axes.
 
     What every contact has is one column for each, such as stops_per_cycle_2.
     Of estimates it is a row for every parameter; of shares every outcome and quantile has a column; of the
     result of a design question it is the curve that was searched.
     """
+    short = None if everything else short_table(ds)
+    if short is not None:
+        return short
     if kind(ds) == "estimates":
         return ds[list(OF_PARAMETERS)].to_dataframe()
     if kind(ds) == "design":
@@ -60,9 +67,9 @@ def _table(ds: xr.Dataset) -> Any:
     dims = [str(name) for name in COORDINATES if name in ds.dims]
     for name, variable in ds.data_vars.items():
         if set(variable.dims) <= set(dims):
-            table[str(name)] = _decode_flags(variable)
+            table[str(name)] = decode_flags(variable)
         elif set(variable.dims) - set(dims) == {"contact"}:
-            table |= _split_contacts(str(name), _decode_flags(variable))
+            table |= _split_contacts(str(name), decode_flags(variable))
     wide = xr.Dataset(table)
     checks.cells(1, 1, math.prod(wide.sizes.values()), name="a table")
     return wide.to_dataframe(dim_order=[dim for dim in dims if dim in wide.dims])
@@ -84,15 +91,3 @@ def _split_contacts(name: str, variable: xr.DataArray) -> dict[str, xr.DataArray
     """A variable of every contact as one of each, by the numbers of the contacts."""
     numbers = range(1, variable.sizes["contact"] + 1)
     return {f"{name}_{k}": variable.isel({"contact": k - 1}, drop=True) for k in numbers}
-
-
-def _decode_flags(variable: xr.DataArray) -> xr.DataArray:
-    """Replace codes by their names."""
-    label = LABELS.get(str(variable.name))
-    if label is None or not label.codes or label.flags == "flag_masks":
-        return variable
-    names = {code.value: code.name for code in (*label.codes, *label.also)}
-    words = variable.astype(object)
-    for value, name in names.items():
-        words = words.where(variable != value, name)
-    return words

@@ -14,7 +14,15 @@ from ..datasets.schema import check_structure, in_brackets, is_own, kind
 from ..errors import InputError, naming
 from .reading import opened
 from .slices import further_axes, natural
-from .summary import axis_lines, describe_reduction, header_lines, in_causes, in_cells, variable_lines
+from .summary import (
+    axis_lines,
+    describe_reduction,
+    header_lines,
+    in_causes,
+    in_cells,
+    name_lines,
+    variable_lines,
+)
 
 #: Cells that are read at a time: those of a block of a store.
 _AT_ONCE = 1 << 20
@@ -27,8 +35,10 @@ def is_study(path: Path) -> bool:
         return not is_own(kind(ds)) and (MARKS in ds or bool(further_axes(ds)))
 
 
-def describe_study(path: Path) -> str:
+def describe_study(path: Path, verbose: bool = False) -> str:
     """Describe on one screen: title, system, axes, variables, finished blocks, regimes of their cells.
+
+    verbose : also the meanings of variables, the program and the command that wrote it
 
     Raises
     ------
@@ -39,7 +49,8 @@ def describe_study(path: Path) -> str:
         with naming(f"file {path}"):
             ds = _reorder(found)
             _check_sizes(ds)
-        lines = [*header_lines(ds, "map"), *axis_lines(ds), *variable_lines(ds)]
+        variables = variable_lines(ds) if verbose else name_lines(ds)
+        lines = [*header_lines(ds, "map", verbose), *axis_lines(ds), *variables]
         lines += _blocks(ds)
         cells, *causes = cell_lines(ds)
         return "\n".join([*lines, cells, *(f"  {line}" for line in causes)])

@@ -23,6 +23,9 @@ _INDENT = 24
 #: Values of a list that are shown.
 _SHOWN = 6
 
+#: Kinds of files whose variables are named only, in short.
+_IN_SHORT = ("map", "curves", "response", "shares")
+
 #: Dimensions of lists short enough to be printed; what has others is only named.
 _LISTS = frozenset(("mu", "mode", "held_mode", "invariant", "dof", "mass_invariant"))
 
@@ -127,14 +130,16 @@ def describe_shares(ds: xr.Dataset) -> str:
     return words
 
 
-def describe_file(ds: xr.Dataset) -> str:
-    """Describe a file on one screen: title, system, axes, variables, values, regimes, unresolved cells.
+def describe_file(ds: xr.Dataset, verbose: bool = False) -> str:
+    """Describe a file on one screen: title, system, results, axes, and the names of its variables.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A map, curves, a response, boundaries, estimates, shares or the result of a design question, or a
         slice of one.
+    verbose : bool
+        Also the meanings and values of variables, the program and the command that wrote it.
 
     Raises
     ------
@@ -143,9 +148,9 @@ def describe_file(ds: xr.Dataset) -> str:
     """
     ds = standard_form(ds)
     what = kind(ds)
-    lines = header_lines(ds, what)
+    lines = header_lines(ds, what, verbose)
     if what == "estimates":
-        return "\n".join([*lines, *_estimates(ds)])
+        return "\n".join([*lines, *_estimates(ds, verbose)])
     if what == "design":
         return "\n".join([*lines, "answer", *(f"  {line}" for line in describe_design(ds))])
     if what in ("history", "spectrum"):
@@ -153,6 +158,8 @@ def describe_file(ds: xr.Dataset) -> str:
             [*lines, *axis_lines(ds), "motions", *(f"  {line}" for line in describe_motions(ds))]
         )
     lines += axis_lines(ds)
+    if not verbose and what in _IN_SHORT:
+        return "\n".join([*lines, *name_lines(ds), *_describe_results(ds, what)])
     if what == "belt":
         names = [str(name) for name in ds.data_vars if not is_in_si(str(name))]
         in_si = ", ".join(str(name) for name in ds.data_vars if name not in names)
@@ -171,20 +178,19 @@ def describe_file(ds: xr.Dataset) -> str:
     return "\n".join(lines)
 
 
-def header_lines(ds: xr.Dataset, what: str) -> list[str]:
-    """Title and kind, system, source, history."""
+def name_lines(ds: xr.Dataset) -> list[str]:
+    """The names of the variables, without those in SI units, and how to list their meanings."""
+    listed = ", ".join(str(name) for name in ds.data_vars if name not in IN_SI)
+    lines = textwrap.wrap(listed, _WIDTH, initial_indent="  ", subsequent_indent="  ")
+    return ["variables (info --verbose describes them)", *lines]
+
+
+def header_lines(ds: xr.Dataset, what: str, verbose: bool = True) -> list[str]:
+    """Title and kind, system, units; with `verbose` also source and history."""
     texts = {name: _printable(ds.attrs.get(name, "")) for name in TEXTS}
     lines = [textwrap.shorten(texts["title"], _WIDTH - len(what) - 3, placeholder="...") + f" [{what}]"]
-    for name in (
-        "system",
-        "reduction",
-        "reduction_check",
-        "decoupling",
-        "modes",
-        "comment",
-        "source",
-        "history",
-    ):
+    names = ["system", "reduction", "reduction_check", "decoupling", "modes", "comment"]
+    for name in [*names, "source", "history"] if verbose else names:
         if texts[name]:
             lines += _entry(name.replace("_", " "), texts[name])
     units = describe_scales(ds)
@@ -214,11 +220,11 @@ def _variables(ds: xr.Dataset, names: Sequence[str], further: Sequence[str] = ()
     return lines + (_entry("older names", ", ".join(older)) if older else [])
 
 
-def _estimates(ds: xr.Dataset) -> Iterator[str]:
+def _estimates(ds: xr.Dataset, verbose: bool) -> Iterator[str]:
     """Describe the origin of the data and the estimates."""
     yield from _entry("data", _printable(source_of_data(ds)))
     yield "estimates"
-    for line in describe_estimates(ds):
+    for line in describe_estimates(ds, verbose):
         shown = "".join(c if c.isprintable() else "?" for c in f"  {line}")
         yield from textwrap.wrap(shown, _WIDTH, subsequent_indent=" " * 6)
 

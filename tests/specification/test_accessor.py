@@ -40,7 +40,7 @@ def test_a_summary_is_what_info_prints(mapped, tmp_path, capsys):
         summary = ds.frictionmap.summary()
         assert capsys.readouterr().out.rstrip() == summary.rstrip()
         assert summary._repr_html_().startswith("<pre>")
-    assert "friction ratio beta                1\n" in summary
+    assert "friction                           beta = 1\n" in summary
     assert repr(summary) == summary
 
 

@@ -361,7 +361,12 @@ def test_info(folder, capsys):
     status_of(
         ["map", "good.toml", "--quiet", "--set", f"solver.outputs={list(OUTPUTS)}", "--set", "title=A map"]
     )
-    out = output_of(capsys, ["info", "good.nc"])
+    brief = output_of(capsys, ["info", "good.nc"])
+    listed = brief.split("variables (info --verbose describes them)\n")[1].splitlines()
+    assert listed[-1].startswith("cells by stops per cycle")
+    assert {*OUTPUTS, "beta_lim", "beta_stick"} <= {*" ".join(listed).replace(",", "").split()}
+    assert "history" not in brief
+    out = output_of(capsys, ["info", "good.nc", "--verbose"])
     lines = out.splitlines()
     assert lines[0] == "A map [map]"
     assert "one mass" in out

@@ -59,6 +59,28 @@ def test_from_a_file_to_a_friction_force(rig, capsys):
         assert not any(np.isnan(ds[name]).any() for name in ds.data_vars if ds[name].dtype.kind == "f")
 
 
+def test_the_result_comes_first_and_a_missing_stiffness_is_named(rig, capsys):
+    """The interval is that of the estimate times k; without k it is F/k, and the key that gives F is named."""
+    path = rig(csv_of(*synthetic(TRUTH, 1)), "[known]\nstiffness = 1191.0")
+    assert main(["identify", str(path)]) == 0
+    _, result, head, *_ = capsys.readouterr().out.splitlines()
+    with xr.open_dataset("rig-identify.nc") as ds:
+        one = ds.sel(parameter="x_F")
+        half = 1.191 * 0.5 * float(one.upper - one.lower)
+        force = float(ds.friction_force)
+    found = re.fullmatch(r"  F = (\S+) \+- (\S+) N \(95 %\); friction and viscous damping found", result)
+    assert float(found[1]) == pytest.approx(force, rel=1e-3)
+    assert float(found[2]) == pytest.approx(half, rel=0.05)
+    assert head.split()[0] == "estimate"
+    assert main(["identify", str(path), "--overwrite", "--verbose"]) == 0
+    assert "linear_decrement" in capsys.readouterr().out
+    assert main(["identify", str(rig(csv_of(*synthetic(TRUTH, 1)))), "--overwrite"]) == 0
+    _, result, missing, *table = capsys.readouterr().out.splitlines()
+    assert re.match(r"  x_F = \S+ \+- \S+ mm \(95 %\); friction", result)
+    assert "known.stiffness (N/m) is missing: with it the friction force" in missing
+    assert not [line for line in table if "linear_decrement" in line]
+
+
 def test_an_existing_file_is_kept(rig, capsys):
     path = rig(csv_of(*synthetic(TRUTH, 1)))
     assert main(["identify", str(path), "--quiet"]) == 0

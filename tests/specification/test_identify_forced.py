@@ -377,7 +377,7 @@ def test_a_spring_that_only_a_lower_bound_is_known_of(rig, capsys):
     """These data are of a rigid contact: the table shows it, and no number that cannot be used."""
     free = '\n[fit]\nfree = ["beta", "f_n", "zeta", "contact_stiffness"]\n'
     text = RIG.replace("mu = 1.0", "stiffness = 2000.0") + free
-    assert main(["identify", rig(text=text)]) == 0
+    assert main(["identify", rig(text=text), "--verbose"]) == 0
     out = capsys.readouterr().out
     row = next(line for line in out.splitlines() if line.split()[:1] == ["contact_stiffness"])
     assert "see interval" in row

@@ -101,7 +101,7 @@ def test_a_choice_twice():
 
 @pytest.mark.parametrize("end", [".nc", ".zarr"])
 def test_info(files, end, capsys):
-    assert main(["info", str(files[end])]) == 0
+    assert main(["info", str(files[end]), "--verbose"]) == 0
     told = capsys.readouterr().out
     assert "sample                0, 1, 2" in told
     assert "varied: damping_ratios, mass_ratios, stiffness_ratios" in " ".join(told.split())

@@ -24,9 +24,10 @@ def datasets():
     }
 
 
+@pytest.mark.parametrize("verbose", [False, True])
 @pytest.mark.parametrize("kind", ["map", "boundaries", "response"])
-def test_one_screen_of_plain_text(datasets, kind):
-    text = describe_file(datasets[kind])
+def test_one_screen_of_plain_text(datasets, kind, verbose):
+    text = describe_file(datasets[kind], verbose)
     assert text.isascii()
     assert len(text.splitlines()) <= HEIGHT
     assert all(len(line) <= WIDTH for line in text.splitlines())
@@ -53,7 +54,7 @@ def test_mass_invariant_points_are_printed_mass_by_mass():
 
 def test_a_response_prints_its_numbers(datasets):
     ds = datasets["response"]
-    text = describe_file(ds)
+    text = describe_file(ds, verbose=True)
     for name in ("stops_per_cycle", "contact_amplitude", "stuck_fraction", "beta_lim", "beta_stick"):
         assert f"{float(ds[name]):.6g}" in text
     reach = np.abs(ds.x).max("tau").values

@@ -25,6 +25,9 @@ _HEADLINES = (
     ("f_n|f_k1m1", ""),
 )
 
+#: Friction forces beside the parameters, without their errors.
+_FORCES = r"friction_force(_(?!standard_error)\w+?)??(?<!_standard_error)"
+
 #: Quantile of a normal deviate for 95 %.
 _NORMAL = 1.96
 
@@ -126,8 +129,7 @@ def _friction(ds: xr.Dataset) -> Iterator[str]:
     Without any of them it is the frequencies.
     """
     names = [str(name) for name in ds["parameter"].values]
-    forces = [name for name in ds.data_vars if re.fullmatch(r"friction_force(_(?!standard)\w+)?", str(name))]
-    forces = [str(name) for name in forces if not str(name).endswith("_standard_error")]
+    forces = [name for name in map(str, ds.data_vars) if re.fullmatch(_FORCES, name)]
     if forces:
         for name in forces:
             label = name.removeprefix("friction_force")

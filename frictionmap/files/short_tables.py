@@ -4,7 +4,7 @@ Columns are named as measured files name theirs: the quantity, the number of the
 unit, such as x_1_m.  Lengths, forces and times are in SI units where the reference values are known.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -78,21 +78,17 @@ def _number(ds: xr.Dataset, dim: str, k: int) -> str:
 
 def _motion_table(ds: xr.Dataset, over: str) -> Any:
     """Displacements, displacements in contacts and friction forces over time."""
-    import pandas as pd
-
     in_seconds = "time" in ds.coords and (over == "tau" or ds["time"].attrs.get("units") == "s")
     time = ds["time"].values if in_seconds else ds[over].values
     columns = {"time_s" if in_seconds else over: time}
     for name in _OF_MOTIONS:
         if name in ds and over in ds[name].dims:
             columns |= dict(_columns(ds, name, [over]))
-    return pd.DataFrame(columns).set_index("time_s" if in_seconds else over)
+    return _frame(columns)
 
 
 def _curve_table(ds: xr.Dataset) -> Any:
     """Regime, stops, amplitudes and phases over frequency; several values of mu and beta side by side."""
-    import pandas as pd
-
     names = [name for name in _OF_CURVES if name in ds]
     if not any("amplitude" in name for name in names):
         names += [name for name in _OTHERWISE if name in ds]
@@ -109,7 +105,14 @@ def _curve_table(ds: xr.Dataset) -> Any:
                     f"{column} ({place})" if several else column: values
                     for column, values in _columns(one, name, ["r"])
                 }
-    return pd.DataFrame(columns).set_index(next(iter(columns)))
+    return _frame(columns)
+
+
+def _frame(columns: Mapping[str, np.ndarray]) -> Any:
+    """Data frame of columns, the first of which is its index."""
+    index, *names = columns
+    variables = {name: (index, columns[name]) for name in names}
+    return xr.Dataset(variables, {index: columns[index]}).to_dataframe()[names]
 
 
 def decode_flags(variable: xr.DataArray) -> xr.DataArray:

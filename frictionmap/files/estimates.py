@@ -28,6 +28,12 @@ _HEADLINES = (
 #: Friction forces beside the parameters, without their errors.
 _FORCES = r"friction_force(_(?!standard_error)\w+?)??(?<!_standard_error)"
 
+#: The same of lengths F/k.
+_LENGTHS = _FORCES.replace("friction_force", "x_F")
+
+#: Beginnings of the names of results that are listed in any case.
+_ALWAYS = ("x_F", "spring_stiffness")
+
 #: Quantile of a normal deviate for 95 %.
 _NORMAL = 1.96
 
@@ -85,7 +91,7 @@ def describe_estimates(ds: xr.Dataset, verbose: bool = False) -> list[str]:
     """Describe the result, warnings, and the estimates as a table; with `verbose` also other results."""
     lines = [result_in_words(ds), *(f"warning: {words}" for words in warnings_of(ds)), *_missing(ds)]
     lines = [*filter(None, lines), *_table(ds)]
-    return [*lines, *_further(ds)] if verbose else lines
+    return [*lines, *_further(ds, verbose)]
 
 
 def _table(ds: xr.Dataset) -> list[str]:
@@ -99,10 +105,12 @@ def _table(ds: xr.Dataset) -> list[str]:
     ]
 
 
-def _further(ds: xr.Dataset) -> list[str]:
-    """Results beside the parameters."""
+def _further(ds: xr.Dataset, verbose: bool) -> list[str]:
+    """Results beside the parameters: all, or lengths F/k and stiffnesses of contacts only."""
     shown = {*_SHOWN_ELSEWHERE, *ds["parameter"].values.tolist()}
     singles = [name for name in ds.data_vars if name not in shown and _is_number(ds[name])]
+    if not verbose:
+        singles = [name for name in singles if str(name).startswith(_ALWAYS)]
     return [
         f"{name}  {float(ds[name]):.5g} {unit_in_words(ds[name].attrs.get('units', '1'))}".rstrip()
         for name in singles
@@ -143,6 +151,13 @@ def _friction(ds: xr.Dataset) -> Iterator[str]:
                 yield f"F{label} = {_rounded_to(float(ds[name]), half)} {unit} (95 %)"
             else:
                 yield f"F{label} = {float(ds[name]):.4g} {unit}"
+        return
+    lengths = [name for name in map(str, ds.data_vars) if re.fullmatch(_LENGTHS, name)]
+    if lengths and "x_F" not in names:
+        for name in lengths:
+            unit = unit_in_words(ds[name].attrs.get("units", "1"))
+            half = _NORMAL * float(ds[f"{name}_standard_error"])
+            yield f"{name} = {_rounded_to(float(ds[name]), half)} {unit} (95 %)"
         return
     for pattern, symbol in _HEADLINES:
         chosen = [name for name in names if re.fullmatch(pattern, name)]

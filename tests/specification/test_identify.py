@@ -60,7 +60,7 @@ def test_from_a_file_to_a_friction_force(rig, capsys):
 
 
 def test_the_result_comes_first_and_a_missing_stiffness_is_named(rig, capsys):
-    """The interval is that of the estimate times k; without k it is F/k, and the key that gives F is named."""
+    """The interval is that of the estimate times k; without k it is F/k, and the key for F is named."""
     path = rig(csv_of(*synthetic(TRUTH, 1)), "[known]\nstiffness = 1191.0")
     assert main(["identify", str(path)]) == 0
     _, result, *more = capsys.readouterr().out.splitlines()

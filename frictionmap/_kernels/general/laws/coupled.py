@@ -27,8 +27,9 @@ _TIE = 1e-12
 _BLOCKS, _MOST_PIVOTS = 10, 2000
 
 #: Rows of the scratch: the side of its range that a contact is at, or 0; rate of its force there; rate of the
-#: displacement without forces, and the size of its terms; rates of the force and of the slider.
-_SIDE, _ALONG, _FREE, _SIZE, _FORCE, _SLIDE = 0, 1, 2, 3, 4, 5
+#: displacement without forces, and the size of its terms; rates of the force and of the slider; 1 where these
+#: are not those of its pattern.
+_SIDE, _ALONG, _FREE, _SIZE, _FORCE, _SLIDE, _WRONG = range(7)
 
 
 @inner_kernel
@@ -132,10 +133,15 @@ def _rates_of_choice(problem, motion, box):
 
 
 @inner_kernel
-def _falls(problem, box, j):
-    """How fast the force of a contact at its limit falls below it, over what is rounding error."""
-    size = _TIE * box[_SIZE, j] * problem.coupling.stiffest[j]
-    return (box[_ALONG, j] - box[_SIDE, j] * box[_FORCE, j]) - size, size
+def _fall(box, j):
+    """How fast the force of a contact at its limit falls below it."""
+    return box[_ALONG, j] - box[_SIDE, j] * box[_FORCE, j]
+
+
+@inner_kernel
+def _rounding(problem, box, j):
+    """Rate of the force of a contact that may be rounding error."""
+    return _TIE * box[_SIZE, j] * problem.coupling.stiffest[j]
 
 
 @kernel
@@ -145,8 +151,7 @@ def _is_wrong(problem, motion, box, j):
         return False
     if motion.sense[j] != 0:
         return motion.sense[j] * box[_SLIDE, j] < -_TIE * box[_SIZE, j]
-    below, size = _falls(problem, box, j)
-    return below < -2.0 * size
+    return _fall(box, j) < -_rounding(problem, box, j)
 
 
 @kernel
@@ -154,14 +159,12 @@ def _flip_wrong(problem, motion, box, alone):
     """Flip the contacts that are wrong, or the last one alone; how many there were."""
     count, last = 0, -1
     for j in range(motion.sense.size):
-        if _is_wrong(problem, motion, box, j):
+        box[_WRONG, j] = 1.0 if _is_wrong(problem, motion, box, j) else 0.0
+        if box[_WRONG, j] != 0.0:
             count, last = count + 1, j
-            box[_SIDE, j] = 2.0 * box[_SIDE, j]  # marked
     for j in range(motion.sense.size):
-        if abs(box[_SIDE, j]) == 2.0:
-            box[_SIDE, j] *= 0.5
-            if j == last or not alone:
-                motion.sense[j] = 0 if motion.sense[j] != 0 else int(box[_SIDE, j])
+        if box[_WRONG, j] != 0.0 and (j == last or not alone):
+            motion.sense[j] = 0 if motion.sense[j] != 0 else int(box[_SIDE, j])
     return count
 
 
@@ -174,8 +177,7 @@ def _begin_phases(problem, friction, motion, x, contact, box):
             continue
         motion.state[F, j] = side * limit_at(problem, friction, motion, x, j)
         if motion.sense[j] == 0:
-            below, _ = _falls(problem, box, j)
-            motion.fresh[j] = side if below > 0.0 else 2 * side
+            motion.fresh[j] = side if _fall(box, j) > _rounding(problem, box, j) else 2 * side
         elif abs(box[_SLIDE, j]) > _TIE * box[_SIZE, j]:
             motion.fresh[j] = 0
         elif j == contact:

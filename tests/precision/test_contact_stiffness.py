@@ -282,3 +282,18 @@ def test_a_record_without_slip():
     assert steady(rig).stops == 0
     with pytest.raises(fm.InputError, match=r"cannot identify x_F and offset_x: the contact of the fitted"):
         fm.identify.record(*sampled(rig, 1), damping_reference="base", free=OF_RECORD)
+
+
+def test_curves_have_the_place_at_which_a_contact_comes_to_rest():
+    """It slips after the start alone: the amplitude in curves is that of maps and of the motion in time."""
+    system = fm.System(damping_ratios=0.02, contact_stiffness=3.0)
+    beta = 1.02 * float(fm.boundaries(system, [0.8]).beta_noslip[0])
+    motion = fm.response(system, r=0.8, beta=beta)
+    assert abs(float(motion.midpoint[0])) > 0.01 * float(motion.peak_to_peak[0])
+    curves = fm.curves(system, r=[0.8], beta=[beta])
+    whole = fm.sweep(system, [0.8], [beta], solver=fm.Solver(outputs=("amplitude", "contact_amplitude")))
+    for found in (curves, whole):
+        assert float(found.amplitude.item()) == pytest.approx(float(motion.amplitude[0]), rel=1e-10)
+        assert float(found.contact_amplitude.item()) == pytest.approx(
+            float(motion.contact_amplitude), rel=1e-10
+        )

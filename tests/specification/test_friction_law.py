@@ -88,8 +88,8 @@ LAWFUL = fm.System(contacts=[fm.Contact(law={"speed": [0.0, 0.5], "factor": [1.0
 
 
 def test_what_is_not_offered_names_the_law():
-    with pytest.raises(fm.InputError, match=r"cannot answer design questions with contacts\[1\].law"):
-        fm.design.stuck(LAWFUL, (0.5, 1.5))
+    with pytest.raises(fm.InputError, match=r"cannot find friction without stops with contacts\[1\].law"):
+        fm.design.no_stop(LAWFUL, (0.5, 1.5))
 
 
 def test_boundaries_with_a_law_are_those_that_it_leaves():

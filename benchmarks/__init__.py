@@ -2,7 +2,7 @@
 
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
-NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, design, static, bound,
+NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, laws, design, static, bound,
 large, explore, first_minute, coupling, coverage, consistency, spectrum or histories: each is a module of
 that name in `measures`.  It prints tables, and writes JSON and perhaps a figure.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
@@ -21,6 +21,7 @@ that name in `measures`.  It prints tables, and writes JSON and perhaps a figure
   steady                       solved against marched, uniqueness for mu = 1, unresolved undamped cells
   structures                   time against the number of masses; five masses against other solvers
   general                      several contacts, elastic contacts, periodic loads: cost, against other solvers
+  laws                         friction over speed: how random cells end, against other solvers
   design                       design questions: time, against whole maps; borders of stop counts
   static                       maps at mu > 1 against those of another checkout, in turn
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
@@ -40,6 +41,7 @@ that name in `measures`.  It prints tables, and writes JSON and perhaps a figure
   shaken                       motions under records: OpenSees, solve_ivp, heyoka
   contacts, periodic_load,     the same for several contacts and loads of several harmonics
   switching
+  speed_law                    the same for friction over speed
 `references/`                  reference results without code of the package; the tests use them, too
   closed_forms                 boundaries and continuous motions in 40 digits, condition numbers
   steady_states                steady states of one mass in 40 digits

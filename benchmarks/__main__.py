@@ -26,6 +26,7 @@ BENCHMARKS = (
     "steady",
     "structures",
     "general",
+    "laws",
     "design",
     "static",
     "bound",

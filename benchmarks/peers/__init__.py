@@ -12,6 +12,7 @@ one_mass          one mass: slides are integrated, the end of a stop is an arcco
 chain             chains: slides and stops are integrated
 contacts          problem with several contacts and a periodic load: bodies, cells, outcomes
 periodic_load     one mass under several harmonics: slides are integrated, stops end on samples of the load
+speed_law         one mass under friction over speed: slides are integrated from break point to break point
 switching         several contacts: which of them slide after an event; each phase is integrated
 solve_ivp         explicit Runge-Kutta pairs of scipy
 heyoka            a compiled Taylor integrator

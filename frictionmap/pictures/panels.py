@@ -191,7 +191,7 @@ def legend_under(ax: Axes, handles: Sequence[Handle]) -> None:
 
     Where a layout of the caller's figure would have to squeeze the axes for it, it is left out.
     """
-    if not current().legend:
+    if not current().legend or not handles:
         return
     width, height = size_of(ax)
     legend = ax.legend(

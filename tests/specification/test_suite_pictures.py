@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from layouts import rendered, words_of
+from matplotlib.figure import Figure
 
 import frictionmap as fm
 from frictionmap import plot
@@ -112,3 +113,12 @@ def test_an_incremental_analysis_needs_several_values_of_friction(spectra):
     for draw in (fm.plot_incremental, fm.plot_spectrum):
         with pytest.raises(fm.InputError, match=r"must have one value of scale; got 2.*--at scale=1\.0"):
             draw(several)
+
+
+def test_pictures_in_given_axes_have_their_legend_below(suite, spectra):
+    for draw, ds in ((fm.plot_history, suite), (fm.plot_energies, suite), (fm.plot_spectrum, spectra)):
+        (new,) = draw(ds)
+        given = Figure(figsize=(6.0, 6.0), layout="constrained").subplots()
+        (ax,) = draw(ds, given)
+        assert [one.get_text() for one in ax.get_legend().get_texts()] == words_of([new])
+        assert draw(ds, Figure().subplots(), legend=False)[0].get_legend() is None

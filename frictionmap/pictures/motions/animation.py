@@ -218,7 +218,7 @@ def _draw_history(ax: Axes, ds: xr.Dataset, traces: Sequence[Trace]) -> Line2D:
         ax.plot(turns, trace.z, color=_colour(trace), linewidth=1.2)
     ax.set_xlim(turns[0], turns[-1])
     ax.set_xlabel(r"$\tau/\pi$")
-    ax.set_ylabel("contact\n" r"$z$ / $(P/k_1)$", fontsize=points(9.0, "axes.labelsize"))
+    ax.set_ylabel(f"contact\n$z$ / {length_unit(ds)}", fontsize=points(9.0, "axes.labelsize"))
     return ax.axvline(turns[0], color=_CURSOR, linewidth=1.2)
 
 

@@ -17,6 +17,8 @@ from ..palette import CLASSES, LINES, STUCK
 from ..panels import Handle, new_figure
 from ..shapes import check_holds, to_draw
 from .in_time import end_picture
+from .loops import draw_arrow
+from .traces import CONTACT_COLOUR, is_at_rest
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -74,8 +76,9 @@ def _draw_times(places: Axes, forces: Axes, ds: xr.Dataset) -> None:
         (places, place * ds["x"].values, f"displacement{length}"),
         (forces, force * np.atleast_2d(ds["friction"].values), f"friction{newton}"),
     ):
+        only = ax is forces and len(rows) == 1
         for k, row in enumerate(rows):
-            ax.plot(time, row, color=LINES[k % len(LINES)], linewidth=1.2)
+            ax.plot(time, row, color=CONTACT_COLOUR if only else LINES[k % len(LINES)], linewidth=1.2)
         ax.set_ylabel(words)
         ax.margins(x=0.0)
         for begin, end in stuck_times(time, np.atleast_2d(ds["direction"].values)):
@@ -89,6 +92,8 @@ def _draw_plane(ax: Axes, ds: xr.Dataset) -> None:
     speed, unit = _handy(ds, "wall_speed", "velocity")
     for k, (x, v) in enumerate(zip(ds["x"].values, ds["v"].values, strict=True)):
         ax.plot(place * x, speed * v, color=LINES[k % len(LINES)], linewidth=1.2)
+        if not is_at_rest(x):
+            draw_arrow(ax, place * x, speed * v, int(np.argmin(v)), LINES[k % len(LINES)])
     ax.axhline(speed * float(ds["wall_speed"]), color="black", linewidth=0.8, linestyle=(0, (4, 2)))
     ax.set_xlabel(f"displacement{length}")
     ax.set_ylabel(f"velocity{unit}")

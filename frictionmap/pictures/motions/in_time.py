@@ -14,8 +14,9 @@ from ...errors import InputError
 from ..drawing import with_options
 from ..options import FigureOptions
 from ..palette import CLASSES, LINES, STUCK
-from ..panels import Handle, given_axes, legend_below, new_figure, title_figure
+from ..panels import Handle, given_axes, legend_below, legend_under, new_figure, title_figure
 from ..shapes import check_holds, check_range, to_draw
+from .traces import CONTACT_COLOUR
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -103,7 +104,8 @@ def _draw_rows(ax: Axes, time: np.ndarray, values: np.ndarray, words: str) -> li
     """Draw a line for every mass or contact; return legend entries where there are several."""
     rows = _by_rows(values)
     for k, row in enumerate(rows):
-        ax.plot(time, row, color=LINES[k % len(LINES)], linewidth=1.1)
+        only = words == "contact" and len(rows) == 1
+        ax.plot(time, row, color=CONTACT_COLOUR if only else LINES[k % len(LINES)], linewidth=1.1)
     if len(rows) == 1:
         return []
     return [Line2D([], [], color=LINES[k % len(LINES)], label=f"{words} {k + 1}") for k in range(len(rows))]
@@ -251,6 +253,8 @@ def plot_history(
     if ax is None:
         motions = 1 if single else ds.sizes["record"] * ds.sizes["scale"]
         end_picture(ds, axes, handles, caption_of(motions))
+    else:
+        legend_under(axes[-1], handles)
     return axes
 
 
@@ -317,4 +321,6 @@ def plot_spectrum(
     axes[0].set_ylim(bottom=0.0)
     if ax is None:
         end_picture(ds, axes, handles, caption_of(len(values)))
+    else:
+        legend_under(axes[-1], handles)
     return axes

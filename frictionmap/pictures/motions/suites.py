@@ -13,7 +13,7 @@ from ...motions.statistics import over_scale
 from ..drawing import with_options
 from ..options import FigureOptions
 from ..palette import LINES
-from ..panels import Handle
+from ..panels import Handle, legend_under
 from ..shapes import check_holds, to_draw
 from .in_time import (
     caption_of,
@@ -89,6 +89,8 @@ def plot_incremental(
     axes[0].set_ylim(bottom=0.0)
     if ax is None:
         end_picture(ds, axes, handles, caption_of(ds.sizes["record"]))
+    else:
+        legend_under(axes[-1], handles)
     return axes
 
 
@@ -138,9 +140,11 @@ def plot_energies(
     axes = one_panel(ax)
     _stack(axes[0], ds["beta"].values, layers, joule)
     axes[0].set_xlabel(r"friction ratio $\beta$")
+    handles = _entries("stored at the end")
     if ax is None:
-        handles = _entries("stored at the end")
         end_picture(ds, axes, handles, "mean of the records" if ds.sizes["record"] > 1 else "")
+    else:
+        legend_under(axes[-1], handles)
     return axes
 
 
@@ -154,6 +158,8 @@ def _over_time(ds: xr.Dataset, axes: "AxesArray", is_new: bool) -> "AxesArray":
     axes[0].set_xlabel(time_words(one))
     if is_new:
         end_picture(ds, axes, _entries("stored"), "")
+    else:
+        legend_under(axes[-1], _entries("stored"))
     return axes
 
 

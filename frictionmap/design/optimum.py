@@ -27,8 +27,8 @@ _MISSED = 1e-10
 _AROUND = np.linspace(0.5, 1.5, 21)
 
 #: A point that is off the line between its neighbours by more than this share of the answer is seen as a
-#: corner in a picture.  Intervals are halved there, in this number of rounds at most, down to this share of the
-#: answer's friction, and between these multiples of the answer.
+#: corner in a picture.  Intervals are halved there, in this number of rounds at most, down to this share of
+#: the answer's friction, and between these multiples of the answer.
 _CORNER, _SMOOTHED, _FINEST, _SEEN = 0.01, 3, 0.01, (0.2, 3.0)
 
 #: Rounds in which peaks that were missed are added.

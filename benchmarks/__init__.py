@@ -3,8 +3,8 @@
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
 NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, laws, design, static, bound,
-large, explore, first_minute, coupling, coverage, consistency, spectrum or histories: each is a module of
-that name in `measures`.  It prints tables, and writes JSON and perhaps a figure.
+large, explore, first_minute, coupling, coverage, consistency, spectrum, histories or banks: each is a module
+of that name in `measures`.  It prints tables, and writes JSON and perhaps a figure.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
@@ -33,6 +33,7 @@ that name in `measures`.  It prints tables, and writes JSON and perhaps a figure
   consistency                  what every map of several contacts must fulfil, in random cells
   spectrum                     friction response spectra: a sample, an event, a whole spectrum
   histories                    motions in time under records: time against error, beside other solvers
+  banks                        banks of elastic elements: time against their number, as one contact or not
 `peers/`                       other solvers: each for one mass and for chains of masses
   solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: many cells at a time
   fixed_step                   time stepping: RK4 with sticking logic, Moreau-Jean

@@ -38,6 +38,7 @@ BENCHMARKS = (
     "consistency",
     "spectrum",
     "histories",
+    "banks",
 )
 
 

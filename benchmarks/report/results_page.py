@@ -44,6 +44,7 @@ QUOTED = (
     "explore",
     "first_minute",
     "static",
+    "banks",
 )
 
 
@@ -282,6 +283,21 @@ def _static_rows(static: dict) -> Iterator[tuple[str, ...]]:
         )
 
 
+def _bank_rows(banks: dict) -> Iterator[tuple[str, ...]]:
+    scenes = banks["scenes"]
+    for name, entry in scenes.items():
+        masses, kind, count = name.removeprefix("masses ").split(", ")
+        each = scenes.get(f"masses {masses}, elements, {count}")
+        if kind != "bank" or each is None:
+            continue
+        own, other = entry["seconds of a processor"]["median"], each["seconds of a processor"]["median"]
+        yield (
+            f"map of {entry['cells']:,} cells, number of masses {masses}, bank of {count} elements as one "
+            "contact, one thread",
+            f"{duration(own)}; element by element {duration(other)}",
+        )
+
+
 def _mass_rows(structures: dict) -> Iterator[tuple[str, ...]]:
     cost = structures["cost"]
     line = cost["ns a scan step, line over masses"]
@@ -413,6 +429,7 @@ def block(results: Path) -> str:
     growth = list(_scaling_rows(found["scaling"])) if "scaling" in found else []
     growth += _mass_rows(structures) if structures else []
     growth += _static_rows(found["static"]) if "static" in found else []
+    growth += _bank_rows(found["banks"]) if "banks" in found else []
     growth += _large_rows(found["large"]) if "large" in found else []
     if growth or "startup" in found:
         lines += ["", "### Computing time and memory"]

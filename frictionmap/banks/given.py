@@ -70,7 +70,8 @@ def bank_system(system: System, r: float) -> BankSystem:
                 "cannot use", name, "with a bank as one contact: this is not offered there; omit it"
             )
     if system.base_control != DISPLACEMENT:
-        general = system.at_frequency(r).contact_system
+        system = system.at_frequency(r)
+        general = system.contact_system
     modes = system.modes
     contacts = tuple(_bank(group, f"contacts[{k}]") for k, group in enumerate(general.groups, 1))
     loads = {n: linear_parts(system, modes.stiffness, n, np.array([r]))[1][0] for n in orders_of(general)}
@@ -84,7 +85,11 @@ def no_slip_limits(system: System, r: np.ndarray) -> np.ndarray:
     All springs of the elements are stretched alike, by half the range of the force over their stiffness.
     """
     given, limits = bank_system(system, 1.0), []
-    needed = least_static_friction(system, r)
+    if system.base_control == DISPLACEMENT:
+        needed = least_static_friction(system, r)
+    else:
+        rows = [least_static_friction(system.at_frequency(float(one)), np.array([one])) for one in r]
+        needed = np.concatenate(rows)
     for j, one in enumerate(given.contacts):
         half = needed[:, j] / one.stiffness.sum()
         per_beta, own = one.reaches

@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import InputError
 from ..general.held import linear_parts, orders_of
 from ..general.problem import refuse_loop
-from ..model.general import DISPLACEMENT, ContactSystem, MergedContact
+from ..model.general import DISPLACEMENT, ContactSystem, MergedContact, refuse_banks
 from ..model.system import System
 from .arrays import fastest, modal, problem_of
 from .system import PhaseContact, PhaseSystem
@@ -77,8 +77,10 @@ def phase_system(system: System, r: float) -> PhaseSystem:
     """The structure, contacts, springs and loads of a system at one frequency ratio > 0."""
     general: ContactSystem = system.contact_system
     refuse_loop(general)
+    refuse_banks(system, "compute motions with contacts that open or piecewise linear springs")
     if system.base_control != DISPLACEMENT:
-        general = system.at_frequency(r).contact_system
+        system = system.at_frequency(r)
+        general = system.contact_system
     modes = system.modes
     contacts = [_contact(group, f"contacts[{k}]") for k, group in enumerate(general.groups, 1)]
     loads = {n: linear_parts(system, modes.stiffness, n, np.array([r]))[1][0] for n in orders_of(general)}

@@ -74,6 +74,10 @@ CASES = {
         [bank(K, U, kind="joined-base-wall")],
         {"damping_ratios": 0.03, "excitation": "base"},
     ),
+    "a base of constant acceleration": (
+        [bank(K, U)],
+        {"damping_ratios": 0.03, "excitation": "base", "base_control": "acceleration"},
+    ),
 }  # fmt: skip
 
 
@@ -162,6 +166,16 @@ def test_parallel_contacts_at_a_joined_wall_begin_where_one_does():
         )
         starts.append(modal.phi @ initial_states(system, problem, modal, "rest")[0, 0])
     assert starts[1] == pytest.approx(starts[0])
+
+
+def test_a_gap_on_a_base_of_constant_acceleration():
+    """Displacements of the base are Y/r^2: where the gap does not close, those of the mass grow alike."""
+    r, found = 0.6, []
+    for control in ("displacement", "acceleration"):
+        gap = {"springs": [{"gap": 1e3, "stiffness": 1.0}], "contacts": [fm.Contact(force=1e-9)]}
+        system = fm.System(excitation="base", damping_ratios=0.05, base_control=control, **gap)
+        found.append(fm.sweep(system, [r], [1.0], outputs=["amplitude"]).amplitude.item())
+    assert found[1] == pytest.approx(found[0] / r**2, rel=1e-6)
 
 
 HALVES = bank([1.0, 1.0], [0.5, 1.0], bank="contact")

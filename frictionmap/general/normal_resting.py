@@ -34,12 +34,10 @@ def _normal_rows(general: ContactSystem) -> np.ndarray:
 
 
 def is_known(system: System) -> bool:
-    """Whether this friction has a closed form: without piecewise linear springs, walls that move with the
-    base, and contacts without friction.
-    """
+    """Whether it has a closed form: without piecewise linear springs and contacts without friction."""
     general = general_of(system)
     smooth = any(one.normal is not None and one.normal.friction == 0.0 for one in general.groups)
-    return not (general.springs or smooth or any(group.base for group in general.groups))
+    return not (general.springs or smooth)
 
 
 def resting_friction(system: System, r: np.ndarray, mu: float) -> np.ndarray:

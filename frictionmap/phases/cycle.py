@@ -103,6 +103,17 @@ def harmonic_phasors(cycle: Cycle, highest: int) -> dict[str, np.ndarray]:
     return {name: np.full_like(one, _UNKNOWN) for name, one in found.items()}
 
 
+def in_contacts(cycle: Cycle, moved: np.ndarray, tau: np.ndarray, derivative: int = 0) -> np.ndarray:
+    """Displacements of masses in contacts (N, T) relative to walls, which may move with the base.
+
+    derivative : 0, or 1 for velocities
+    """
+    base = np.zeros_like(tau)
+    for n, phasor in cycle.system.at_frequency(cycle.r).contact_system.base.items():
+        base = base + ((1j * n) ** derivative * phasor * np.exp(1j * n * tau)).real
+    return moved - cycle.found.problem.moved[:, np.newaxis] * base
+
+
 def _base_velocity(cycle: Cycle, tau: np.ndarray) -> np.ndarray:
     """Velocity of the base to which the dampers are relative, dx/dtau."""
     found = np.zeros_like(tau)

@@ -51,7 +51,6 @@ def _refuse_group(group: MergedContact, key: str) -> None:
     for name, there, why in (
         ("law", first.law is not None, "friction over speed"),
         ("normal_load", bool(first.nu), "a given normal load"),
-        ("kind", bool(group.base), "a wall that moves with the base"),
     ):
         if there:
             raise InputError(
@@ -65,6 +64,7 @@ def _contact(group: MergedContact, key: str) -> GivenContact:
     _refuse_group(group, key)
     first, normal = group.first, group.normal
     own = {"stiffness": group.stiffness or 0.0, "wall_speed": first.wall_speed, "group": group}
+    own["moved"] = float(group.base)
     if normal is not None:
         own |= {
             "normal": normal.direction, "normal_stiffness": normal.stiffness, "friction": normal.friction,
@@ -85,8 +85,9 @@ def phase_system(system: System, r: float) -> PhaseSystem:
     contacts = [_contact(group, f"contacts[{k}]") for k, group in enumerate(general.groups, 1)]
     loads = {n: linear_parts(system, modes.stiffness, n, np.array([r]))[1][0] for n in orders_of(general)}
     return PhaseSystem(
-        modes.mass, modes.damping, modes.stiffness, contacts, general.springs, loads, offset=general.offset
-    )
+        modes.mass, modes.damping, modes.stiffness, contacts, general.springs, loads, dict(general.base),
+        general.offset,
+    )  # fmt: skip
 
 
 def changes_with_r(system: System) -> bool:

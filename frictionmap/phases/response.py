@@ -14,7 +14,7 @@ from ..general.normal_limits import limit_variables
 from ..general.response import contact_trace, load_over, of_cell
 from ..model.settings import HARMONICS, Solver
 from ..model.system import System
-from .cycle import Cycle, cycle_values
+from .cycle import Cycle, cycle_values, in_contacts
 from .dataset import has_output, impact_comment, spring_coordinates
 from .given import check_ratios, phase_system
 from .motion import at_times, events, in_time
@@ -98,12 +98,13 @@ def _events(cycle: Cycle, shown: int, begin: float) -> dict[str, np.ndarray]:
     own, length = np.arange(tau.size), 2.0 * np.pi * cycle.found.averaged
     chi = cycle.found.problem.chi
     motion = at_times(cycle.steps, cycle.modal.squares.size, np.mod(tau + begin - SECTION, length))
-    velocity = (chi @ motion.rate)[contact, own] - _belts(cycle)[contact]
+    places = in_contacts(cycle, chi @ motion.q, tau + begin)
+    velocity = in_contacts(cycle, chi @ motion.rate, tau + begin, 1)[contact, own] - _belts(cycle)[contact]
     opened = found["event_open"][order]
     values: dict[str, np.ndarray] = {
         "event_tau": tau,
         "event_direction": senses_of(found["event_direction"][order], opened, velocity),
-        "event_z": (chi @ motion.q)[contact, own],
+        "event_z": places[contact, own],
     }
     general = cycle.system.contact_system
     if any(group.normal is not None for group in general.groups):

@@ -120,7 +120,11 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
         "where friction depends on the speed no limit of it is known; compute a map of stops_per_cycle",
     )
     if system.contact_system.has_phases:
-        refuse_phases(system, "find friction without stops")
+        refuse_phases(
+            system,
+            "find friction without stops",
+            "no limit of it is known there; compute a map of stops_per_cycle",
+        )
     if not has_no_stop_limit(system):
         raise InputError(
             "cannot find friction without stops with contact_stiffness: a spring in the contact has no such "

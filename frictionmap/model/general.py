@@ -259,7 +259,8 @@ class ContactSystem:
         """The same contacts and loads of a structure that keeps only these rows, `self.rows` among them."""
         return replace(
             self,
-            groups=tuple(replace(group, vector=group.vector[rows]) for group in self.groups),
+            groups=tuple(_group_at(group, rows) for group in self.groups),
+            springs=tuple(replace(one, direction=one.direction[rows]) for one in self.springs),
             forces={n: force[rows] for n, force in self.forces.items()},
             offset=self.offset[rows],
         )
@@ -299,6 +300,14 @@ class ContactSystem:
         """Describe the contacts that were merged; empty if none were."""
         found = [group.name for group in self.groups if len(group.members) > 1]
         return f"parallel contacts act as one: {'; '.join(found)}" if found else ""
+
+
+def _group_at(group: MergedContact, rows: np.ndarray) -> MergedContact:
+    """A contact of a structure that keeps only these rows."""
+    normal = group.normal
+    if normal is not None:
+        normal = replace(normal, direction=normal.direction[rows])
+    return replace(group, vector=group.vector[rows], normal=normal)
 
 
 def uses_general(system: Definition) -> bool:
@@ -374,10 +383,11 @@ def refuse_law(
             raise InputError(f"cannot {what} with contacts[{k}].law: {why}")
 
 
-def refuse_phases(system: Definition, what: str) -> None:
+def refuse_phases(system: Definition, what: str, why: str = "") -> None:
     """Refuse contacts that open, and piecewise linear springs.
 
     what : words after "cannot", such as "compute motions under records"
+    why : the reason, and what to do; default: it is not offered
     """
     keys = [
         f"contacts[{k}].normal" for k, one in enumerate(system.contacts or (), 1) if one.normal is not None
@@ -385,10 +395,8 @@ def refuse_phases(system: Definition, what: str) -> None:
     if system.springs is not None:
         keys.append("springs")
     if keys:
-        raise InputError(
-            f"cannot {what} with {keys[0]}: contacts that open and piecewise linear springs are not offered "
-            f"there; omit {keys[0]}"
-        )
+        usual = f"contacts that open and piecewise linear springs are not offered there; omit {keys[0]}"
+        raise InputError(f"cannot {what} with {keys[0]}: {why or usual}")
 
 
 def refuse_banks(system: Definition, what: str) -> None:

@@ -34,7 +34,6 @@ from .general import (
     describe_springs,
     format_orders,
     mass_key,
-    refuse_phases,
     uses_general,
 )
 from .given_modes import ModesArgument, damping_of, describe_modes, modes_of, on_modes
@@ -334,8 +333,6 @@ class System(Shown):
             _ = self.modes  # errors that only the modes reveal are raised here
         if self.rigid_modes:
             check_free(self, self.modes)
-        if self.reduce is not None:
-            refuse_phases(self, "reduce a structure")
 
     def _filled(self) -> Mapping[str, object]:
         one = (1.0,) if self.matrices is None and self.n == 1 else None

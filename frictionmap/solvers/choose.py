@@ -38,7 +38,11 @@ def engine_of(system: System) -> Engine:
         from .phases import PhasesEngine
 
         if system.rigid_modes:
-            refuse_phases(system, "compute steady states of a free structure")
+            refuse_phases(
+                system,
+                "compute steady states of a free structure",
+                "springs must hold it; add a spring to the ground, such as 1e-6 of the others",
+            )
         return PhasesEngine(system)
     if has_closed_forms(system):
         from .single import SingleEngine

@@ -207,7 +207,7 @@ def test_base_motion_is_a_load_and_its_work_is_balanced():
 
 
 @pytest.mark.parametrize(("stiffness", "mu"), [(3.0, 1.0), (None, 1.2)])
-def test_walls_that_move_with_the_base_are_fixed_ones_beside_loads(stiffness, mu):
+def test_walls_that_move_with_the_base_are_fixed_ones_under_loads(stiffness, mu):
     """Relative to the base r^2 M 1 cos(tau) is the load, where nothing else is fixed to the ground."""
     r, beta, masses = 0.7, 0.06, np.array([1.0, 0.5])
     normal = {"masses": [1, 2], "stiffness": 1.0, "friction": 0.4}

@@ -232,10 +232,24 @@ def test_functions_that_do_not_take_them_name_the_key():
             call()
 
 
-def test_a_reduced_structure_with_them_is_refused():
-    matrices = {"M": np.eye(3), "K": np.array([[2.0, -1, 0], [-1, 2, -1], [0, -1, 2]])}
-    with pytest.raises(fm.InputError, match="cannot reduce a structure with springs: "):
-        fm.System(matrices=matrices, reduce={"modes": 1}, springs=[GAP])
+def test_a_reduced_structure_keeps_what_presses_and_what_is_stretched():
+    """With all modes it is the whole structure."""
+    n = 6
+    stiffness = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+    keys = {
+        "matrices": {"M": np.eye(n), "K": stiffness, "C": 0.05 * stiffness}, "frequency_scale": 0.5,
+        "load_mass": 6, "contacts": [{"masses": [2], "stiffness": 3.0, "normal": {**NORMAL, "mass": 5}}],
+        "springs": [{"masses": [4], "gap": 0.05, "stiffness": 2.0}],
+    }  # fmt: skip
+    whole, small = (
+        fm.sweep(
+            fm.System(**keys, **more), [0.9, 1.7], [0.05, 0.2], outputs=["open_fraction", "spring_force_max"]
+        )
+        for more in ({}, {"reduce": {"modes": 2, "allow": 1.0}})
+    )
+    assert small.open_fraction.max() > 0.0
+    for name in ("open_fraction", "spring_force_max"):
+        np.testing.assert_allclose(small[name], whole[name], atol=1e-9)
 
 
 def test_a_free_structure_with_them_is_refused():

@@ -519,7 +519,7 @@ design question.toml --set design.question=no-separation
 design question.toml --set design.question=stuck --set 'system.springs=[{gap=0.5,stiffness=2.0}]'
     [design]: cannot find friction that holds with piecewise linear springs or contacts without friction: the friction that holds has no closed form there; compute a map, or use question at-most
 design question.toml --set design.question=no-stop --set 'system.springs=[{gap=0.5,stiffness=2.0}]'
-    [design]: cannot find friction without stops with springs: contacts that open and piecewise linear springs are not offered there; omit springs
+    [design]: cannot find friction without stops with springs: no limit of it is known there; compute a map of stops_per_cycle
 design question.toml --set 'system.springs=[{gap=0.5,stiffness=2.0}]'
     design.beta must be two friction ratios with piecewise linear springs or contacts without friction: the friction that holds has no closed form there; got none
 design question.toml --set design.question=margin --set design.r=0 --set design.beta=1

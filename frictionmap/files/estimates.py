@@ -137,7 +137,8 @@ def _friction(ds: xr.Dataset) -> Iterator[str]:
     Without any of them it is the frequencies.
     """
     names = [str(name) for name in ds["parameter"].values]
-    forces = [name for name in map(str, ds.data_vars) if re.fullmatch(_FORCES, name)]
+    numbers = [str(name) for name in ds.data_vars if _is_number(ds[name])]
+    forces = [name for name in numbers if re.fullmatch(_FORCES, name)]
     if forces:
         for name in forces:
             label = name.removeprefix("friction_force")
@@ -146,18 +147,13 @@ def _friction(ds: xr.Dataset) -> Iterator[str]:
             if length in names and float(ds["estimate"].sel(parameter=length)) > 0.0:
                 factor = float(ds[name]) / float(ds["estimate"].sel(parameter=length))
                 yield _with_interval(f"F{label}", ds.sel(parameter=length), unit, factor)
-            elif f"{name}_standard_error" in ds:
-                half = _NORMAL * float(ds[f"{name}_standard_error"])
-                yield f"F{label} = {_rounded_to(float(ds[name]), half)} {unit} (95 %)"
             else:
-                yield f"F{label} = {float(ds[name]):.4g} {unit}"
+                yield _with_error(ds, name, f"F{label}")
         return
-    lengths = [name for name in map(str, ds.data_vars) if re.fullmatch(_LENGTHS, name)]
+    lengths = [name for name in numbers if re.fullmatch(_LENGTHS, name)]
     if lengths and "x_F" not in names:
         for name in lengths:
-            unit = unit_in_words(ds[name].attrs.get("units", "1"))
-            half = _NORMAL * float(ds[f"{name}_standard_error"])
-            yield f"{name} = {_rounded_to(float(ds[name]), half)} {unit} (95 %)"
+            yield _with_error(ds, name, name)
         return
     for pattern, symbol in _HEADLINES:
         chosen = [name for name in names if re.fullmatch(pattern, name)]
@@ -167,6 +163,16 @@ def _friction(ds: xr.Dataset) -> Iterator[str]:
                 unit = unit_in_words(str(one["unit"].values))
                 yield _with_interval(symbol or name, one, unit)
             return
+
+
+def _with_error(ds: xr.Dataset, name: str, symbol: str) -> str:
+    """A number beside the parameters, with its 95 % interval if its standard error is there."""
+    unit, error = unit_in_words(ds[name].attrs.get("units", "1")), f"{name}_standard_error"
+    if error not in ds or not _is_number(ds[error]):
+        return f"{symbol} = {float(ds[name]):.4g} {unit}".rstrip()
+    return (
+        f"{symbol} = {_rounded_to(float(ds[name]), _NORMAL * float(ds[error]))} {unit}".rstrip() + " (95 %)"
+    )
 
 
 def _with_interval(name: str, one: xr.Dataset, unit: str, factor: float = 1.0) -> str:
@@ -184,6 +190,8 @@ def _with_interval(name: str, one: xr.Dataset, unit: str, factor: float = 1.0) -
 
 def _rounded_to(value: float, half: float) -> str:
     """A value with half the width of its interval, both to the second digit of that."""
+    if not np.isfinite(half):
+        return f"{value:.4g} +- {half:g}"
     return _format_to_error(value, half).replace("\u00b1", "+-")
 
 

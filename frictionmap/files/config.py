@@ -1,6 +1,7 @@
 """Configuration files (TOML): read, overridden, checked key by key."""
 
 import os
+import re
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,7 +17,15 @@ from ..datasets.provenance import to_toml
 from ..errors import InputError, naming
 from ..model.periodic_load import WAVEFORMS
 from ..model.sectors import in_full
-from ..model.settings import BORDERS, CurveSettings, Solver, curve_settings
+from ..model.settings import (
+    BORDERS,
+    GENERAL_OUTPUTS,
+    OUTPUTS,
+    CurveSettings,
+    Solver,
+    curve_settings,
+    unknown_output,
+)
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
 from ..no_load.belts import belts_of, is_phases
@@ -171,7 +180,34 @@ def parse(text: str) -> dict:
     try:
         return tomllib.loads(text)
     except _NOT_TOML as error:
-        raise InputError(f"cannot parse as TOML: {error}; correct the syntax") from None
+        raise InputError(f"cannot parse as TOML: {error}; {_correction(text, str(error))}") from None
+
+
+#: Mistakes in a line of TOML, and what to do about them.
+_MISTAKES = (
+    (re.compile(r"[=\[{,]\s*([+-]?\d+),(\d+)\s*(?=$|[#}\]]|,\s*[A-Za-z])"), "use a decimal point: {0}.{1}"),
+    (
+        re.compile(r"[=\[,]\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?\s*(?:[A-Za-z\u00b5%][^\s,}\]#\"']*))"),
+        'put a number with its unit in quotes: "{0}"',
+    ),
+    (
+        re.compile(r"=\s*(?!(?:true|false|inf|nan)\b)([A-Za-z_][^,}\]#=\"']*?)\s*(?=$|[,}\]#])"),
+        'put text in quotes: "{0}"',
+    ),
+)
+
+
+def _correction(text: str, error: str) -> str:
+    """What to do about text that is not TOML: a frequent mistake in the line that the error names."""
+    place = re.search(r"at line (\d+)", error)
+    lines = text.splitlines()
+    line = lines[int(place[1]) - 1] if place and 0 < int(place[1]) <= len(lines) else ""
+    for mistake, remedy in _MISTAKES:
+        found = mistake.search(line)
+        if found:
+            return remedy.format(*found.groups())
+    quotes = line.partition("#")[0].count('"') % 2
+    return "close the quotation mark" if quotes else "correct the syntax"
 
 
 def _override_all(tree: dict, overrides: Sequence[str]) -> None:
@@ -417,6 +453,7 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
     wanted = _wanted(tree)
     title, system, units, files = common_tables(tree, path, wanted)
     settings, borders = _without_borders(_table(tree, "solver"))
+    _check_outputs(settings.get("outputs"), system)
     solver = _build(Solver, settings, "solver")
     curves = _build(curve_settings, _table(tree, "curves"), "curves")
     design_table(tree)
@@ -448,6 +485,15 @@ def _check(tree: Mapping[str, object], text: str, path: Path, room: Room | None)
         title, system, axes["r"], axes["beta"], axes["mu"], solver, curves, text, path.stem, variations,
         files, units, borders,
     )  # fmt: skip
+
+
+def _check_outputs(outputs: object, system: System) -> None:
+    """Refuse unknown outputs, listing those of this system."""
+    from ..solvers.choose import valid_outputs
+
+    for name in outputs if isinstance(outputs, list) else ():
+        if name not in (*OUTPUTS, *GENERAL_OUTPUTS):
+            raise unknown_output(name, valid_outputs(system)).renamed("solver.outputs")
 
 
 def _belt(

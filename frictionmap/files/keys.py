@@ -697,18 +697,19 @@ KEYS: dict[str, tuple[Key, ...]] = {
         _setting("cycles", "maximum number of excitation periods", whole(**RANGES["cycles"])),
         _setting(
             "tolerance",
-            "tolerance on the change of the state over one period",
+            "for experts: tolerance on the change of the state over one period",
             number(**RANGES["tolerance"]),
         ),
-        _setting("steps", "scan steps per period; affects speed only", whole(**RANGES["steps"])),
+        _setting("steps", "for experts: scan steps per period; affects speed only", whole(**RANGES["steps"])),
         _setting(
             "skip",
-            'skip cells that a proof decides ("exact"), or integrate every cell with friction ("none")',
+            'for experts: skip cells that a proof decides ("exact"), or integrate every cell that has friction '
+            '("none")',
             word(*get_args(Skip)),
         ),
         _setting(
             "steady",
-            "solve for the periodic orbit, or integrate until the motion repeats",
+            "for experts: solve for the periodic orbit, or integrate until the motion repeats",
             word(*get_args(Steady)),
         ),
         Key(

@@ -1,6 +1,6 @@
 """Settings of the steady-state solver, and of response curves."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, TypedDict, get_args
 
@@ -72,6 +72,46 @@ GeneralOutput = Literal[
     "unique",
 ]
 GENERAL_OUTPUTS: tuple[str, ...] = get_args(GeneralOutput)
+
+#: Outputs by what they are about, for messages; all others are diagnostics, for experts.
+_GROUPS = {
+    "regime": (
+        *("regime", "contact_regime", "stops_per_cycle", "turns_per_cycle", "stuck_fraction"),
+        *("slips_per_cycle", "slip_reversals_per_cycle", "elastic_fraction", "open_fraction"),
+        *("separations_per_cycle", "segment_crossings", "segment_fraction", "spring_crossings"),
+        *("also_reachable", "sliding_limit", "beta_lim_modal"),
+    ),
+    "motion": (
+        *("contact_amplitude", "amplitude", "contact_peak_to_peak", "contact_midpoint", "peak_to_peak"),
+        *("midpoint", "contact_first_harmonic_amplitude", "contact_first_harmonic_phase", "drift"),
+        *("acceleration_amplitude", "mean_velocity", "period", "asymmetry", "least_slip"),
+    ),
+    "forces and energy": (
+        *("sliding_distance", "work_friction", "work_input", "work_damping", "work_wall"),
+        *("equivalent_damping", "base_force", "normal_force_min", "normal_force_max", "spring_force_max"),
+    ),
+}
+
+
+def describe_outputs(names: Iterable[str]) -> str:
+    """List outputs in groups."""
+    left = list(dict.fromkeys(names))
+    parts = []
+    for group, members in _GROUPS.items():
+        found = [name for name in members if name in left]
+        left = [name for name in left if name not in found]
+        parts += [f"{group}: {', '.join(found)}"] if found else []
+    return "; ".join([*parts, *([f"diagnostics: {', '.join(left)}"] if left else [])])
+
+
+def unknown_output(name: object, valid: Iterable[str]) -> InputError:
+    """The error for an output that does not exist."""
+    known = list(valid)
+    hint = checks.nearest(name, known) if isinstance(name, str) else ""
+    return InputError(
+        "outputs", f"must be some of ({describe_outputs(known)}); got {checks.one_line(name)}{hint}"
+    )
+
 
 #: Of these, the ones that systems with one rigid contact under one harmonic load have as well: the solver of
 #: general systems records them.
@@ -153,11 +193,11 @@ class Solver(Shown):
         if isinstance(self.outputs, str) or not isinstance(self.outputs, Sequence):
             raise InputError("outputs", f"must be a list of names; got {checks.one_line(self.outputs)}")
         for name in self.outputs:
-            checks.choice(name, "outputs", (*OUTPUTS, *GENERAL_OUTPUTS))
+            if name not in (*OUTPUTS, *GENERAL_OUTPUTS):
+                raise unknown_output(name, (*OUTPUTS, *GENERAL_OUTPUTS))
         if not self.outputs:
-            raise InputError(
-                "outputs", f"must name at least one of {', '.join((*OUTPUTS, *GENERAL_OUTPUTS))}; got none"
-            )
+            valid = describe_outputs((*OUTPUTS, *GENERAL_OUTPUTS))
+            raise InputError("outputs", f"must name at least one of ({valid}); got none")
         object.__setattr__(self, "outputs", tuple(dict.fromkeys(self.outputs)))
 
     @property

@@ -2,6 +2,7 @@
 
 from ..errors import InputError
 from ..model.general import refuse_banks, refuse_law, refuse_phases
+from ..model.settings import OUTPUTS, RECORDED
 from ..model.system import System
 from .interface import Engine
 
@@ -12,6 +13,26 @@ def has_closed_forms(system: System) -> bool:
     They are for one rigid contact under one harmonic load.
     """
     return system.general is None
+
+
+def valid_outputs(system: System) -> tuple[str, ...]:
+    """The outputs of maps of a system."""
+    general = system.contact_system
+    if general.has_banks:
+        from ..banks.dataset import TABLE as OF_BANKS
+        from ..banks.dataset import has_output as is_of_banks
+
+        return tuple(name for name in OF_BANKS if is_of_banks(name, general))
+    if general.has_phases:
+        from ..phases.dataset import TABLE as OF_PHASES
+        from ..phases.dataset import has_output as is_of_phases
+
+        return tuple(name for name in OF_PHASES if is_of_phases(name, general))
+    if has_closed_forms(system):
+        return (*OUTPUTS, *RECORDED)
+    from ..general.outputs import TABLE, is_wanted
+
+    return tuple(name for name in TABLE if is_wanted(name, general))
 
 
 def engine_of(system: System) -> Engine:

@@ -703,7 +703,7 @@ KEYS: dict[str, tuple[Key, ...]] = {
         _setting("steps", "for experts: scan steps per period; affects speed only", whole(**RANGES["steps"])),
         _setting(
             "skip",
-            'for experts: skip cells that a proof decides ("exact"), or integrate every cell that has friction '
+            'for experts: skip cells that a proof decides ("exact"), or integrate every cell with friction '
             '("none")',
             word(*get_args(Skip)),
         ),

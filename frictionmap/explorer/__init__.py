@@ -5,8 +5,8 @@ module             what is in it
 =================  ===========================================================================================
 scene_parts        sliders, contacts and boundaries that a page offers
 contacts           contacts to choose from: places of the only one, or which of several is shown
-sliders            numbers of a system that can be changed
 law_numbers        numbers of friction over speed that a slider changes
+sliders            numbers of a system that can be changed
 scene              subject of a page: system, initial view, parameters that can be changed
 views              one view: changed system, ranges of r and beta, mu
 quantities         what the cells of a map show: classes of their regime, or a quantity

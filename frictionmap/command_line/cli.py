@@ -419,9 +419,8 @@ def _ask_for_sliders(options: Options, page: "StoredPage") -> None:
         return
     keys = ", ".join(slider.key for slider in page.sliders)
     print(f"frictionmap: {about} with the sliders {keys}", file=sys.stderr)
-    print(
-        "Sliders to keep, separated by commas (Enter: all; none: none): ", end="", file=sys.stderr, flush=True
-    )
+    question = "Sliders to keep, separated by commas (Enter: all; none: none): "
+    print(question, end="", file=sys.stderr, flush=True)
     answer = sys.stdin.readline().strip()
     if answer:
         page.keep(_keys_of(answer))

@@ -38,7 +38,7 @@ _CELLS = {False: (360, 270), True: (180, 135)}
 #: Places of each slider: two sliders are moved together, further ones by themselves.
 _PLACES, _TOGETHER = 7, 2
 
-#: Cells of a map for each motion that is stored, each way: of the map that the page opens with, and of others.
+#: Cells of a map for each motion that is stored, each way: of the first map, and of others.
 _PER_MOTION = {False: (24, 72), True: (12, 36)}
 
 #: Every so many samples of a motion are stored, and bits of their numbers: as many as a chart shows.
@@ -198,7 +198,7 @@ def _thinned(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def _motions(scene: Scene, view: View, per_motion: int) -> dict[str, Any]:
-    """Motions in cells over a map, row by row from the lowest friction, each after the number of its bytes."""
+    """Motions in cells over a map, row by row from the lowest friction, each after its number of bytes."""
     columns, rows = (max(1, count // per_motion) for count in _cells(view))
     axes = view.axes(columns, rows)
     units, packets = units_of(scene, view), []
@@ -228,7 +228,7 @@ class StoredPage:
         """Keep these sliders only; of the maps so far the initial one stays."""
         self.sliders = chosen_sliders(self._scene, sliders)
         self._points = _points_of(self.sliders)
-        self._maps = {self._points[0]: one for one in list(self._maps.values())[:1]}
+        self._maps = dict(zip(self._points[:1], list(self._maps.values())[:1], strict=False))
 
     @property
     def count(self) -> int:
@@ -281,7 +281,7 @@ class StoredPage:
         return {**found, "about": self._systems.index(about)}
 
     def _content(self) -> dict[str, Any]:
-        """What the page contains: sliders have the places for which there is a map with the others as they were."""
+        """What the page contains: sliders have places for which there is a map with the others as they were."""
         with self._lock:
             maps, systems = dict(self._maps), list(self._systems)
         own = self._points[0]

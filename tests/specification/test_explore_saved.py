@@ -26,9 +26,8 @@ damping_ratios = 0.02
 r = [0.2, 1.8]
 beta = [0.1, 1.2]
 """
-TWO_MASSES = ONE.replace(
-    "damping_ratios", "mass_ratios = [1.0, 1.0]\nstiffness_ratios = [1.0, 1.0]\ndamping_ratios"
-)
+CHAIN = "mass_ratios = [1.0, 1.0]\nstiffness_ratios = [1.0, 1.0]\n"
+TWO_MASSES = ONE.replace("damping_ratios", CHAIN + "damping_ratios")
 
 
 @pytest.fixture(autouse=True)

@@ -281,7 +281,7 @@ class StoredPage:
         return {**found, "about": self._systems.index(about)}
 
     def _content(self) -> dict[str, Any]:
-        """What the page contains: sliders have places for which there is a map with the others as they were."""
+        """What the page contains: places of sliders have a map with the other sliders as they were."""
         with self._lock:
             maps, systems = dict(self._maps), list(self._systems)
         own = self._points[0]

@@ -29,9 +29,12 @@ def lines_of(view: View) -> tuple[Line, ...]:
 
 
 def _opening_lines(view: View) -> tuple[Line, ...]:
-    """The friction at preload from which the only contact, whose normal force moves, never slides."""
+    """The friction at preload from which the only contact, whose normal force moves, never slides.
+
+    Where the preload is given, beta changes nothing, and the place of a cell above or below says nothing.
+    """
     general = view.system.contact_system
-    if general.count > 1 or general.springs:
+    if general.count > 1 or general.springs or any(one.first.has_preload for one in general.groups):
         return ()
     if general.elastic.all():
         return (_no_slip("the contact never slips", _DASHED),)

@@ -1,6 +1,6 @@
 """A motion in sentences: what the contacts do in a cell, and why."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -44,6 +44,7 @@ def describe_motion(
     shown = range(count) if k is None else [k]
     many = len(shown) > _MOST
     found = _describe_many(view, values) if many else [_describe_contact(view, values, j) for j in shown]
+    found += _given_frictions(view, shown)
     known = {name: float(one.item()) for name, one in limits.items() if name in _SYMBOLS}
     found += [_explained(beta, known)] if view.engine.has_closed_limits else _placed(beta, known)
     status = int(values["status"])
@@ -61,6 +62,19 @@ def _describe_contact(view: View, values: Mapping[str, np.ndarray], j: int) -> s
     opened = 100.0 * float(values["open_fraction"][j]) if "open_fraction" in values else 0.0
     opens = f"; it is open {opened:.3g} % of the time" if opened > 0.0 else ""
     return f"{who[0].upper()}{who[1:]} {does}{opens}."
+
+
+def _given_frictions(view: View, shown: Iterable[int]) -> list[str]:
+    """The friction of contacts whose preload is given: beta does not change it."""
+    groups, found = view.system.contact_system.groups, []
+    for j in shown:
+        if groups[j].first.has_preload:
+            normal = groups[j].first.normal
+            who = f" of {groups[j].name}" if len(groups) > 1 else ""
+            unit = "k₁Y" if view.system.excitation == "base" else "P"
+            friction = f"{normal.friction * max(0.0, normal.preload):.4g} {unit}"
+            found.append(f"The preload is given: the friction{who} at rest is {friction}, whatever β is.")
+    return found
 
 
 def _describe_many(view: View, values: Mapping[str, np.ndarray]) -> list[str]:

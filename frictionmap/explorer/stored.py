@@ -199,11 +199,16 @@ def _thinned(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 def _motions(scene: Scene, view: View, per_motion: int) -> dict[str, Any]:
     """Motions in cells over a map, row by row from the lowest friction, each after its number of bytes."""
-    columns, rows = (max(1, count // per_motion) for count in _cells(view))
-    axes = view.axes(columns, rows)
+    shape = _cells(view)
+    axes = view.axes(*shape)
+    columns, rows = (max(1, count // per_motion) for count in shape)
+    # in the middle of a cell of the map: the middle of its range is often the resonance
+    across, up = (
+        (np.arange(count) + 0.5) * cells // count for count, cells in zip((columns, rows), shape, strict=True)
+    )
     units, packets = units_of(scene, view), []
-    for beta in axes["beta"]:
-        for r in axes["r"]:
+    for beta in axes["beta"][up.astype(int)]:
+        for r in axes["r"][across.astype(int)]:
             header, arrays = motion(view, float(r), float(beta), _Unwatched())
             packet = pack({**header, **units, "others": False}, _thinned(arrays))
             packets.append(struct.pack("<I", len(packet)) + packet)

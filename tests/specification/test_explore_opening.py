@@ -97,6 +97,8 @@ def test_an_open_contact_has_a_state_of_its_own(pages):
     assert 0.1 < share < 0.9
     opened = arrays["states"][0] == 2
     np.testing.assert_array_equal(opened, ds.open.values.ravel() == 1)
+    assert "The preload is given: the friction at rest is 0.32 P, whatever β is." in header["summary"]
+    assert not any("β_stick" in text for text in header["summary"])
     assert any(f"it is open {100 * share:.3g} % of the time" in text for text in header["summary"])
     listed = {entry["name"]: value for entry, value in zip(header["entries"], arrays["numbers"], strict=True)}
     assert listed["open_fraction"] == pytest.approx(100 * share)

@@ -478,7 +478,8 @@ def test_a_view_can_be_taken_along(browser, one, tmp_path):
 def test_a_page_as_a_file_needs_no_server(browser, tmp_path):
     scene = scene_from(tmp_path, ONE)
     with pytest.MonkeyPatch.context() as patch:
-        for name, value in {"_CELLS": {False: (40, 30)}, "_PLACES": 3}.items():
+        settings = {"_CELLS": {False: (40, 30)}, "_PLACES": 3, "_PER_MOTION": {False: (10, 10)}}
+        for name, value in settings.items():
             patch.setattr(stored, name, value)
         (tmp_path / "page.html").write_bytes(stored.write_page(scene, lambda *_: None))
     url = f"{(tmp_path / 'page.html').as_uri()}#mu=1.7"
@@ -497,9 +498,10 @@ def test_a_page_as_a_file_needs_no_server(browser, tmp_path):
 
         np.testing.assert_array_equal(middles(), maps(1.0, 0.0))
         page.mouse.click(*point(page, 0.2, 0.7))  # r = 0.4, beta = 0.84: beta_stick is 1/mu
-        assert "stops" in page.inner_text("#motion")
+        regime = "() => document.querySelector('#motion .regime')?.innerText"
+        page.wait_for_function(f"{regime} === 'Stick-slip'")
         repainted(page, lambda: page.evaluate(MOVE, ["mu", 1]))
-        assert "permanent sticking" in page.inner_text("#motion")
+        page.wait_for_function(f"{regime} === 'Permanent sticking'")
         page.keyboard.press("Escape")
         repainted(page, lambda: page.evaluate(MOVE, ["damping_ratios", 1]))
         mu, zeta = (
@@ -509,7 +511,9 @@ def test_a_page_as_a_file_needs_no_server(browser, tmp_path):
         np.testing.assert_array_equal(middles(), maps(mu, zeta))
         repainted(page, lambda: page.select_option("#quantity", "stuck_fraction"))
         page.mouse.move(*point(page, 0.2, 0.3))
-        assert "run frictionmap explore" in page.inner_text("#motion")
+        page.wait_for_function(
+            "() => document.querySelector('#motion .where').innerText.startsWith('nearest in this file')"
+        )
         repainted(page, lambda: page.click("[data-zoom=in]"))
 
 

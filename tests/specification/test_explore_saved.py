@@ -46,7 +46,7 @@ class Interrupted(Exception):
 
 
 def stopping(after):
-    """A receiver of progress that ends the run when so many maps are there."""
+    """A receiver of progress that ends the run after this number of maps."""
 
     def progress(done, total):
         if done >= after and done == int(done):
@@ -135,10 +135,9 @@ def test_cells_of_a_saved_page_can_be_clicked(browser, tmp_path):
         page.mouse.click(*point(page, 0.4, 0.3))
         page.wait_for_function(f"() => {where}.startsWith('selected, nearest in this file')")
         r, beta = (float(text) for text in re.findall(r"= ([0-9.]+)", page.evaluate(where)))
-        middles = [0.2 + 1.6 * (k + 0.5) / 4 for k in range(4)], [0.1 + 1.1 * (k + 0.5) / 3 for k in range(3)]
-        assert r == pytest.approx(middles[0][1], abs=1e-3)
-        assert beta == pytest.approx(middles[1][0], abs=1e-3)
-        ds = fm.response(scene.system, middles[0][1], middles[1][0])
+        cell = 0.2 + 1.6 * 3.5 / 8, 0.1 + 1.1 * 1.5 / 6  # of 8 x 6 of the map, with 4 x 3 motions
+        assert (r, beta) == pytest.approx(cell, abs=1e-3)
+        ds = fm.response(scene.system, *cell)
         regime = {fm.regimes.STICK_SLIP: "Stick-slip", fm.regimes.CONTINUOUS: "Continuous sliding"}
         assert page.inner_text("#motion .regime") == regime[ds.regime.item()]
         words = page.inner_text("#motion table")

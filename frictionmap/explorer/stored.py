@@ -197,11 +197,17 @@ def _thinned(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     }
 
 
+def _motion_counts(shape: tuple[int, int], per_motion: int) -> tuple[int, int]:
+    """Motions over a map of this number of cells, each way."""
+    columns, rows = shape
+    return max(1, columns // per_motion), max(1, rows // per_motion)
+
+
 def _motions(scene: Scene, view: View, per_motion: int) -> dict[str, Any]:
     """Motions in cells over a map, row by row from the lowest friction, each after its number of bytes."""
     shape = _cells(view)
     axes = view.axes(*shape)
-    columns, rows = (max(1, count // per_motion) for count in shape)
+    columns, rows = _motion_counts(shape, per_motion)
     # in the middle of a cell of the map: the middle of its range is often the resonance
     across, up = (
         (np.arange(count) + 0.5) * cells // count for count, cells in zip((columns, rows), shape, strict=True)
@@ -227,6 +233,8 @@ class StoredPage:
         self._systems: list[dict[str, Any]] = []  # few of them: not all sliders change them
         self._maps: dict[tuple[float, ...], dict[str, Any]] = {}  # by the positions of all sliders
         self._example: dict[str, Any] | None = None
+        self._view = read_query(scene, "").view
+        self._per_motion = _PER_MOTION[not self._view.is_quick]
         self.keep(sliders)
 
     def keep(self, sliders: Sequence[str] | None) -> None:
@@ -254,16 +262,25 @@ class StoredPage:
     @property
     def expected_size(self) -> float:
         """Bytes of the complete page, as the maps so far have."""
-        first, *others = [_size(one) for one in self._maps.values()] or [0]
-        each = sum(others) / len(others) if others else first
-        return first + each * (self.count - 1)
+        return self.size + self._next_size * (self.count - self.done)
+
+    @property
+    def _next_size(self) -> float:
+        """Bytes of the next map: like the others; after the first one, which has more motions, fewer."""
+        with self._lock:
+            first, *others = list(self._maps.values())
+        if others:
+            return sum(map(_size, others)) / len(others)
+        motions, fewer = first["motions"], _motion_counts(_cells(self._view), self._per_motion[True])
+        share = fewer[0] * fewer[1] / (motions["columns"] * motions["rows"])
+        return _size(first) - (1.0 - share) * len(motions["packets"])
 
     def compute(self, progress: MapProgress, most: float = np.inf, only_first: bool = False) -> None:
         """Compute the maps that are missing, until the file would have more than `most` bytes."""
         for point in self._points[: 1 if only_first else None]:
             if point in self._maps:
                 continue
-            if self._maps and self.size * (1.0 + 1.0 / self.done) > most:
+            if self._maps and self.size + self._next_size > most:
                 return
             found = self._computed(point, progress)
             with self._lock:
@@ -275,8 +292,7 @@ class StoredPage:
         text = "&".join(f"{slider.key}={value!r}" for slider, value in zip(self.sliders, point, strict=True))
         view = read_query(self._scene, text).view
         found = _map(view, quantities_of(view), _OneOf(progress, self.done, self.count))
-        per_motion = _PER_MOTION[not view.is_quick]
-        found["motions"] = _motions(self._scene, view, per_motion[bool(self._maps)])
+        found["motions"] = _motions(self._scene, view, self._per_motion[bool(self._maps)])
         if not self._maps:
             self._example = _example(self._scene, view)
         about = description(self._scene, view)
@@ -299,9 +315,11 @@ class StoredPage:
             for point, one in maps.items()
             if all(value in values for value, values in zip(point, alone, strict=True))
         }
-        view = read_query(self._scene, "").view
-        columns, rows = _cells(view)
-        described = {**describe_scene(self._scene, view), "sliders": [one._asdict() for one in self.sliders]}
+        columns, rows = _cells(self._view)
+        described = {
+            **describe_scene(self._scene, self._view),
+            "sliders": [one._asdict() for one in self.sliders],
+        }
         return {
             "scene": described,
             "r": self._scene.r, "beta": self._scene.beta, "columns": columns, "rows": rows,

@@ -510,10 +510,6 @@ def test_a_page_as_a_file_needs_no_server(browser, tmp_path):
         assert (mu, zeta) == (2.0, 0.125)
         np.testing.assert_array_equal(middles(), maps(mu, zeta))
         repainted(page, lambda: page.select_option("#quantity", "stuck_fraction"))
-        page.mouse.move(*point(page, 0.2, 0.3))
-        page.wait_for_function(
-            "() => document.querySelector('#motion .where').innerText.startsWith('nearest in this file')"
-        )
         repainted(page, lambda: page.click("[data-zoom=in]"))
 
 

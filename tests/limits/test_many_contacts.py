@@ -72,6 +72,29 @@ def test_second_starts(n):
         assert found[0] == pytest.approx(found[1], abs=1e-12 * found[0].max())
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [9, 16, 24])
+@pytest.mark.parametrize("grounds", [False, True])
+def test_second_starts_of_contacts_that_close_loops(count, grounds):
+    """Rings of unequal sectors with rigid dampers between neighbours, and to the ground."""
+    rng = np.random.default_rng(count)
+    contacts = [{"kind": "between-masses", "masses": [1, "next.1"]}]
+    contacts += [{"kind": "fixed-wall", "masses": 1, "ratio": 0.3}] if grounds else []
+    sectors = {
+        "count": count, "mass": [[1.0]], "stiffness": [[0.6]], "engine_order": 2,
+        "coupling": [{"masses": [1, 1], "stiffness": 0.5}],
+        "spread": {"standard_deviation": 0.03, "seed": count},
+    }  # fmt: skip
+    system = fm.ring(sectors=sectors, contacts=contacts, load_mass=1, damping_ratios=0.05)
+    beta = rng.uniform(0.2, 0.7) * fm.boundaries(system, [1.1])["beta_stick"].item()
+    found = [
+        ranges(system, 1.1, beta, start=start).contact_peak_to_peak.values.ravel()
+        for start in ("rest", "moving")
+    ]
+    assert found[0].max() > 0.01
+    assert found[0] == pytest.approx(found[1], abs=1e-12 * found[0].max())
+
+
 def test_at_most_64_contacts():
     contacts = [fm.Contact("between-masses", (1, 2), stiffness=1.0)] * 65
     with pytest.raises(fm.InputError, match="at most 64"):

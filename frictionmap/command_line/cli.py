@@ -571,7 +571,7 @@ def _maps_along(options: Options, names: Collection[str]) -> "xr.Dataset":
 
 def _plot_structure(options: Options) -> None:
     """Draw the structure of a configuration, or its modes."""
-    from ..files.config import load_config
+    from ..files.config import common_tables, read_tree
     from ..files.places import claimed
     from ..plot import FORMATS, save_structure
 
@@ -582,7 +582,7 @@ def _plot_structure(options: Options) -> None:
     path = options.output or Path(f"{options.file.stem}-{what}.png")
     if path.suffix.lower() not in FORMATS:
         raise InputError(f"-o must end in {', '.join(FORMATS)}; got {path}")
-    system = load_config(options.file).system
+    system = common_tables(read_tree(options.file)[0], options.file).system
     given: Any = {name: getattr(options, name) for name in FIGURE if getattr(options, name) is not None}
     with claimed(path, options.overwrite, [options.file]) as output:
         output.fill(lambda scratch: save_structure(system, scratch, what, style=options.style, **given))

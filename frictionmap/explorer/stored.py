@@ -41,7 +41,7 @@ _PLACES, _TOGETHER = 7, 2
 #: Cells of a map for each motion that is stored, each way: of the first map, and of others.
 _PER_MOTION = {False: (24, 72), True: (12, 36)}
 
-#: Every so many samples of a motion are stored, and bits of their numbers: as many as a chart shows.
+#: One sample of how many is stored, and bits of the numbers: as many as a chart shows.
 _EVERY, _BITS = 4, 0xFFFFF000
 
 #: Share of a map that is done when its cells are computed, at most.

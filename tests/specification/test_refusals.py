@@ -477,7 +477,7 @@ design good.toml
 design question.toml --set design.quest=stuck
     unknown key 'design.quest' (did you mean question?); valid: question, band, response, mu, beta, limit, r, spread, quantile, second, ratio
 design question.toml --set design.question=best
-    design.question must be one of least-peak, no-stop, stuck, at-most, margin, robust, two-forces, no-separation; got 'best' (did you mean robust?)
+    design.question must be one of least-peak, no-stop, stuck, at-most, margin, robust, two-forces, no-squeal, no-separation; got 'best' (did you mean robust?)
 design good.toml --set design.question=stuck
     design.band must be given for question stuck; got nothing
 design question.toml --set design.band=[1]

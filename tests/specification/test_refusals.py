@@ -304,7 +304,7 @@ info good.toml
     cannot read results from good.toml: it is a configuration; compute it first, e.g. frictionmap map good.toml
 info rig.toml
     cannot read results from rig.toml: it is a configuration; compute it first, e.g. frictionmap identify rig.toml
-plot pulse.toml
+info pulse.toml
     cannot read results from pulse.toml: it is a configuration; compute it first, e.g. frictionmap history pulse.toml
 info spectra.toml
     cannot read results from spectra.toml: it is a configuration; compute it first, e.g. frictionmap spectrum spectra.toml

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from .. import regimes
+from .._kernels.general.fill import Cells
 from ..jobs import Watch
 from ..model.settings import Solver
 from ..model.sizes import Sizes, Wanted
@@ -9,7 +11,7 @@ from ..model.system import System
 from .held import least_static_friction, stick_scales
 from .maps import solve_cells
 from .outputs import number, output_values
-from .problem import general_of
+from .problem import general_of, is_symmetric, static_offset
 
 QUANTITIES = ("amplitude", "contact")
 
@@ -23,11 +25,29 @@ def sizes_on_grid(
     stick = stick_scales(general_of(system), needed, axes["mu"]).max(axis=2)
     found = solve_cells(system, axes, stick, solver, threads, None, watch, masses=True)
     if wanted.quantity == "amplitude":
-        size = output_values("amplitude", system, found)[0, ..., wanted.row]
+        size = _amplitude(system, found, bool((axes["mu"] == 1.0).all()))[0, ..., wanted.row]
     else:
         size = output_values("contact_amplitude", system, found)[0, ..., wanted.contact]
     stops = np.nan_to_num(number("stops", found)[0]).max(axis=-1)
     return Sizes(size, found.regime[0], stops, found.status[0])
+
+
+def _amplitude(system: System, found: Cells, flat: bool) -> np.ndarray:
+    """Largest displacement of each mass, (..., n), contacts at rest in the middle of where they can be.
+
+    Where a contact stays at rest depends on the start, which is not what a design is about.  If half periods
+    of the load mirror each other, every steady motion has a mirror image.  Where the motion is unique but for
+    such places (mu = 1 and friction that does not depend on the speed; or all contacts rest) the mean of both
+    is a steady motion, too: it goes half the range to either side of where constant loads move it.
+    flat : whether mu is 1
+    """
+    general, rests = general_of(system), found.contact_regime == regimes.PERMANENT_STICKING
+    amplitude = output_values("amplitude", system, found)
+    if not is_symmetric(general):
+        return amplitude
+    middle = rests.any(axis=-1) if flat and not general.has_law else rests.all(axis=-1)
+    centred = 0.5 * output_values("peak_to_peak", system, found) + np.abs(static_offset(system)[1])
+    return np.where(middle[..., np.newaxis], centred, amplitude)
 
 
 def sizes_at(

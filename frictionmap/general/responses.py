@@ -36,8 +36,8 @@ def _amplitude(system: System, found: Cells, flat: bool) -> np.ndarray:
     """Largest displacement of each mass, (..., n), contacts at rest in the middle of where they can be.
 
     Where a contact stays at rest depends on the start, which is not what a design is about.  If half periods
-    of the load mirror each other, every steady motion has a mirror image.  Where the motion is unique but for
-    such places (mu = 1 and friction that does not depend on the speed; or all contacts rest) the mean of both
+    of the load mirror each other, every steady motion has a mirror image.  Where only such places are not
+    unique (mu = 1 and friction that does not depend on the speed; or all contacts rest) the mean of both
     is a steady motion, too: it goes half the range to either side of where constant loads move it.
     flat : whether mu is 1
     """

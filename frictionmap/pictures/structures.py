@@ -33,7 +33,7 @@ CONTACT, LOAD, BODY, GROUND = LINES[4], LINES[0], "#dce9f5", "#606060"
 #: Half the side of a mass, and height of springs and loads in it, where masses are 1 apart.
 _HALF, _SPRING, _LOAD = 0.25, -0.08, 0.12
 
-#: Names of so many points are written next to them.
+#: Names of points are written next to them up to this number of points.
 _NAMED = 40
 
 #: Springs of matrices are drawn if they are above this share of the largest one.

@@ -16,6 +16,13 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+#: Said of contacts whose normal force moves with the structure.
+_OTHERS = (
+    "other motions may exist beside contacts at rest, since normal forces move with the structure: a map "
+    'with solver.start = "moving" shows those that begin with a large motion'
+)
+
+
 def stuck(system: System, band: Any, mu: float = 1.0, *, units: Units | None = None) -> "xr.Dataset":
     """Find the least friction that holds over a band: the largest beta_stick, or beta_noslip, theory.md 4.
 
@@ -57,7 +64,8 @@ def stuck(system: System, band: Any, mu: float = 1.0, *, units: Units | None = N
     found = {"beta": beta, "at_r": r, "mu": mu, **boundaries_over(system, checked, mu)}
     if starts_matter(system, mu):
         found["beta_stuck_some_starts"] = largest_stick(system, checked, mu).beta
-    return answer("stuck", system, checked, found, {"mu": mu}, units, scales)
+    ds = answer("stuck", system, checked, found, {"mu": mu}, units, scales)
+    return ds.assign_attrs(warnings=_OTHERS) if system.contact_system.has_phases else ds
 
 
 def _holding(ds: "xr.Dataset", _: Any) -> Ranges:
@@ -78,7 +86,8 @@ def _sentence(ds: "xr.Dataset") -> Iterator[str]:
         )
     else:
         decides = f" ({where} decides)" if where else ""
-        yield whole_sentence(f"from {words.friction(beta, UP)} everything is stuck{band_of(ds)}{decides}")
+        what = "all contacts can rest" if ds.attrs.get("warnings") == _OTHERS else "everything is stuck"
+        yield whole_sentence(f"from {words.friction(beta, UP)} {what}{band_of(ds)}{decides}")
 
 
 STUCK = Question(

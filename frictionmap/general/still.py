@@ -3,7 +3,7 @@
 import numpy as np
 
 from .. import regimes
-from ..model.general import ContactSystem
+from ..model.general import ContactSystem, rank_of
 
 #: Part of a vector outside the span of others, over its length, that is rounding error.
 _ROUNDING = 1e-12
@@ -23,7 +23,8 @@ def still_masses(general: ContactSystem, rests: np.ndarray) -> np.ndarray:
     rows = np.eye(n) if general.points is None else general.points.shapes
     if not len(vectors):
         return np.zeros(len(rows), dtype=bool)
-    span = np.linalg.qr(vectors.T)[0]  # the contacts are independent
+    # contacts that close loops span fewer directions than they are
+    span = np.linalg.svd(vectors.T, full_matrices=False)[0][:, : rank_of(vectors)]
     if general.points is None:
         return np.asarray(np.linalg.norm(rows - span @ span.T, axis=0) <= _ROUNDING)
     rest = np.linalg.norm(rows - rows @ span @ span.T, axis=1)

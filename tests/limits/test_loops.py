@@ -248,3 +248,43 @@ def test_second_starts_of_random_rings():
             for start in ("rest", "moving")
         ]
         assert found[0] == pytest.approx(found[1], abs=1e-12 * found[0].max())
+
+
+@pytest.mark.parametrize("r", [0.3, 1.1])
+def test_masses_that_a_held_loop_joins_go_on_moving(r):
+    """Three masses on one spring, joined by three contacts, are one mass 3: 2/|1 - 3 r^2| from end to end."""
+    system = fm.System(
+        contacts=[fm.Contact("between-masses", pair) for pair in PAIRS], mass_ratios=[1, 1, 1],
+        stiffness_ratios=[1, 1, 1], load_mass=2,
+    )  # fmt: skip
+    wanted = 2.0 / abs(1.0 - 3.0 * r * r)
+    ds = fm.sweep(system, [r], [5.0], outputs=["regime", "peak_to_peak"])
+    assert ds.regime.item() == 0
+    assert ds.peak_to_peak.values.ravel() == pytest.approx([wanted] * 3, rel=1e-12)
+    motion = fm.response(system, r, 5.0, points=4)  # tau = 0 is an extreme, and so is the middle
+    assert np.ptp(motion.v.values, axis=1) == pytest.approx([wanted] * 3, rel=1e-12)
+    assert motion.v.values[:, 1] == pytest.approx([-0.5 * np.sign(1.0 - 3.0 * r * r) * wanted] * 3, rel=1e-12)
+
+
+def test_a_loop_at_rest_on_moving_sectors():
+    """Sectors of a ring under order 0 move alike: contacts between them rest, each is on its own spring."""
+    sector = {
+        "count": 4, "mass": [[1.0]], "stiffness": [[1.3]], "engine_order": 0,
+        "coupling": [{"masses": [1, 1], "stiffness": 0.6}],
+    }  # fmt: skip
+    between = fm.Contact("between-masses", [1, "next.1"])
+    keys = {"sectors": sector, "load_mass": 1, "damping_ratios": 0.08}
+    ring, r, w = fm.ring(contacts=[between], **keys), 0.4, np.sqrt(1.3)
+    found = fm.sweep(ring, [r], [0.3], outputs=["peak_to_peak"]).peak_to_peak.values.ravel()
+    s = r * w  # r is over the first natural frequency, that of sectors in phase
+    assert found == pytest.approx([2.0 / abs(1.3 - s * s + 0.16j * w * s)] * 4, rel=1e-12)
+    ground = fm.Contact("fixed-wall", [1], ratio=0.5)
+    found = fm.sweep(
+        fm.ring(contacts=[between, ground], **keys),
+        [r],
+        [0.3],
+        outputs=["peak_to_peak", "contact_peak_to_peak"],
+    )
+    grounded = found.contact_peak_to_peak.values.ravel()[4:]
+    assert found.peak_to_peak.values.ravel() == pytest.approx(grounded, rel=1e-12)
+    assert grounded.min() > 1.0

@@ -64,7 +64,10 @@ def setup(app: object) -> None:
 
     def show(display: str) -> tuple:
         def visit(writer: object, node: object) -> None:
-            writer.body.append(convert(node.astext(), display=display))
+            formula = convert(node.astext(), display=display)
+            # a formula wider than a small window scrolls by itself; the page does not
+            scrolls = '<div class="math" tabindex="0" style="overflow-x: auto; overflow-y: hidden">'
+            writer.body.append(f"{scrolls}{formula}</div>" if display == "block" else formula)
             raise SkipNode
 
         return visit, None

@@ -1,5 +1,6 @@
 """The manual is built without a warning, names every command, key and function, and fetches nothing."""
 
+import html
 import os
 import re
 import subprocess
@@ -91,3 +92,23 @@ def test_nothing_is_fetched_from_elsewhere(manual):
         assert not [tag for tag in tags if re.search(r'(?:src|href)="(?:https?:)?//', tag)], page
     for sheet in manual.rglob("*.css"):
         assert not re.search(r"(?:url\(|@import)\s*['\"]?(?:https?:)?//", sheet.read_text(encoding="utf-8"))
+
+
+def test_every_formula_of_the_theory_is_typeset(manual):
+    source = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+    displayed = re.findall(r"^ *\$\$\n(.+?)\n *\$\$$", source, re.MULTILINE | re.DOTALL)
+    inline = re.findall(r"(?<!\$)\$[^$\n]+\$(?!\$)", source)
+    assert len(displayed) > 30  # the pattern finds them
+    page = text(manual, "theory.html")
+    assert '<div class="highlight' not in page  # no formula in a box of characters
+    formulas = re.findall(r"<math\b.*?</math>", page, re.DOTALL)
+    assert len(formulas) == len(displayed) + len(inline)
+    assert page.count('<div class="math"') == len(displayed)  # each can scroll by itself
+    # what the converter does not know stays in the text as it is: commands, and & of an environment
+    shown = [html.unescape(re.sub(r"<[^>]+>", "", formula)) for formula in formulas]
+    assert not [formula for formula in shown if "\\" in formula or "&" in formula]
+
+
+def test_no_formula_of_the_manual_is_left_as_source(manual):
+    for page in manual.rglob("*.html"):
+        assert "$$" not in page.read_text(encoding="utf-8"), page

@@ -109,6 +109,14 @@ def test_every_formula_of_the_theory_is_typeset(manual):
     assert not [formula for formula in shown if "\\" in formula or "&" in formula]
 
 
+def test_no_symbol_of_the_theory_is_spelled_out(manual):
+    page = text(manual, "theory.html")
+    page = page[page.index("<h1>") : page.index("</article>")]
+    prose = html.unescape(re.sub(r"<[^>]+>", "", re.sub(r"<(math|code)\b.*?</\1>", "", page, flags=re.DOTALL)))
+    greek = r"\b(?:beta|gamma|chi|lambda|omega|zeta|tau|phi|kappa|sigma|theta)(?:_\w+)?\b"
+    assert re.findall(rf"{greek}|\w\^\{{", prose) == []
+
+
 def test_no_formula_of_the_manual_is_left_as_source(manual):
     for page in manual.rglob("*.html"):
         assert "$$" not in page.read_text(encoding="utf-8"), page

@@ -86,6 +86,13 @@ def test_every_guide_can_be_found(manual):
     assert len(list(manual.glob("figures/plot_*.html"))) == len(list((ROOT / "docs/gallery").glob("*.py")))
 
 
+@pytest.mark.parametrize(
+    "word", ["squeal", "macroslip", "bearing", "isolator", "brace", "blade", "backlash", "earthquake"]
+)
+def test_first_page_has_the_words_of_the_trades(manual, word):
+    assert word in text(manual, "index.html")
+
+
 def test_nothing_is_fetched_from_elsewhere(manual):
     for page in manual.rglob("*.html"):
         tags = re.findall(r"<(?:script|link|img|iframe|source)\b[^>]*>", page.read_text(encoding="utf-8"))

@@ -66,6 +66,7 @@ def test_python_blocks_of_guides_run(tmp_path):
     for name, (shown, shorter) in SHORTER.items():
         assert codes[name].count(shown) == 1
         codes[name] = codes[name].replace(shown, shorter)
+    (tmp_path / "configs").symlink_to(ROOT / "configs")  # guides read configurations of the repository
     programs = [code for code in codes.values() if code and "dask_jobqueue" not in code]
     assert len(programs) >= 3
     code = "\n".join(f"exec(compile({code!r}, '<guide>', 'exec'), {{}})" for code in programs)

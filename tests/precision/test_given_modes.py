@@ -363,7 +363,6 @@ def test_refusals(make, message):
     lambda system: fm.continuous_motion(system, r=0.5, beta=0.1),
     lambda system: fm.sweep(system, r=[0.5], beta=[0.1], solver=fm.Solver(outputs=("drift",))),
     lambda system: fm.sweep(system, r=[0.5], beta=[0.1], solver=fm.Solver(outputs=("base_force",))),
-    lambda system: fm.explore(system, r=[0.5, 1.0], beta=[0.1, 0.2]),
 ])  # fmt: skip
 def test_what_modes_do_not_offer(ask):
     system = fm.System(modes=fm.Modes([1.0], 0.1, [[1.0]], ["tip"]), contact_masses=["tip"])

@@ -198,14 +198,10 @@ def test_files_of_others(folder, capsys):
             ("undecodable.nc", "its source is 'not given'"),
         ):
             assert_refused(capsys, folder, [command, name], f"cannot read {name}: ", word)
-        first = "compute it first, e.g. frictionmap map good.toml"
-        assert_refused(
-            capsys,
-            folder,
-            [command, "good.toml"],
-            "cannot read results from good.toml: it is a configuration",
-            first,
-        )
+    first = "compute it first, e.g. frictionmap map good.toml"
+    refusal = "cannot read results from good.toml: it is a configuration"
+    assert_refused(capsys, folder, ["info", "good.toml"], refusal, first)
+    assert status_of(["plot", "good.toml"]) == 0  # of its structure
 
 
 OUTPUT_COMMANDS = [

@@ -1,5 +1,7 @@
 """The command `identify` for forced responses: columns, sets, what is refused and what is warned of."""
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -250,8 +252,10 @@ def test_accelerations_and_velocities_of_base_and_mass(rig, unit, order, size):
 def test_friction_in_newtons(rig, capsys):
     """k1 beta Y of every set, with its error."""
     text = RIG.replace("mu = 1.0", 'mu = 1.0\nstiffness = "2 N/mm"')
-    assert main(["identify", rig(text=text)]) == 0
-    assert "friction_force_2  " in capsys.readouterr().out
+    assert main(["identify", rig(text=text), "--verbose"]) == 0
+    printed = capsys.readouterr().out
+    assert "friction_force_2  " in printed
+    assert re.search(r"F_2 = 1\.\d+ \+- 0\.\d+ N \(95 %\)", printed)
     ds = estimates_of("rig-identify.nc")
     for name in ("1", "2"):
         one = ds.sel(parameter=f"beta_{name}")

@@ -220,7 +220,7 @@ REFUSED = [
     ("map", lambda ds: ds.assign(regime=ds.regime + 100), "regime must be one of .* got 102 at"),
     ("map", lambda ds: ds.assign(regime=ds.regime.astype("i4") + 256), "regime must be one of .* got 258 at"),
     ("map", lambda ds: ds.assign(status=ds.status + 99), "status must be one of 0, 1, 2.*; got"),
-    ("map", lambda ds: ds.assign(also_reachable=ds.also_reachable + 8), "must be a sum of 1, 2, 4; got"),
+    ("map", lambda ds: ds.assign(also_reachable=ds.also_reachable + 16), "must be a sum of 1, 2, 4, 8; got"),
     ("map", lambda ds: ds.assign(period=ds.period - 9), "period must be whole, >= 0; got -"),
     ("map", lambda ds: ds.assign(stops_per_cycle=-1 - ds.stops_per_cycle), "finite, >= 0 or NaN; got -1"),
     ("map", lambda ds: ds.assign(stops_per_cycle=ds.stops_per_cycle + np.inf), "or NaN; got inf"),

@@ -204,20 +204,6 @@ def command(tmp_path, monkeypatch, capsys):
     return run
 
 
-@pytest.mark.parametrize(
-    ("call", "what"),
-    [
-        ("explore b1.toml --no-browser", "show a page"),
-        ("explore gap.toml --no-browser", "show a page"),
-    ],
-)
-def test_commands_that_do_not_take_them_name_the_key(command, call, what):
-    status, error = command(call)
-    key = "springs" if "gap" in call else "contacts[1].normal"
-    assert status == 2
-    assert f"cannot {what} with {key}: contacts that open and piecewise linear springs" in error
-
-
 def test_functions_that_do_not_take_them_name_the_key():
     system = two(contacts=[{"normal": NORMAL}])
     record = fm.Record([0.0, 1.0, 0.0], dt=0.1, quantity="force", mass=1)

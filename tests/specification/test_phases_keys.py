@@ -193,9 +193,6 @@ def test_a_file_holds_the_system():
 def command(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "b1.toml").write_text(B1)
-    (tmp_path / "gap.toml").write_text(
-        "[system]\nsprings = [{ gap = 0.5, stiffness = 4.0 }]\n[grid]\nr = 1.3\nbeta = 0.0\n"
-    )
 
     def run(text):
         status = main(text.split())

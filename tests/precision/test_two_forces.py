@@ -53,7 +53,8 @@ def test_the_answer_is_the_least_of_its_ridge(answer):
 @pytest.mark.slow
 def test_it_is_drawn_and_summarised(answer):
     assert len(fm.plot_design(answer)) == 3
-    assert any(line.startswith("ratio of contact 2") for line in describe_design(answer))
+    (line,) = [line for line in describe_design(answer) if line.startswith("friction of contact 2")]
+    assert line.endswith(f"ratio {answer.second_ratio.item():.4g}")
 
 
 @pytest.mark.parametrize(

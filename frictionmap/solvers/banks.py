@@ -9,7 +9,7 @@ from ..jobs import Progress, Watch
 from ..model.general import refuse_banks
 from ..model.settings import CurveSettings, Solver
 from ..model.sizes import Sizes, Wanted
-from .interface import Engine, Limits
+from .interface import FollowingEngine, Limits
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -17,17 +17,11 @@ if TYPE_CHECKING:
     from ..single.points import States
 
 
-class BanksEngine(Engine):
+class BanksEngine(FollowingEngine):
     """Contacts of one elastic element or more.
 
     Other questions are refused here, and by `refuse_banks` where no engine is asked.
     """
-
-    has_closed_limits = False
-    intervals = 1
-    states_status = True
-    compares_starts = False
-    order_step = 1
 
     @property
     def kernels(self) -> str:
@@ -38,15 +32,6 @@ class BanksEngine(Engine):
         from ..banks.given import least_ratio
 
         return least_ratio(self.system)
-
-    @property
-    def least_stick_ratio(self) -> float:
-        return 0.0
-
-    def check_static(self, mu: np.ndarray) -> None:
-        from ..general.dataset import refuse_static
-
-        refuse_static(self.system.contact_system, mu)
 
     @property
     def outputs(self) -> tuple[str, ...]:

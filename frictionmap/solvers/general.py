@@ -11,7 +11,7 @@ from ..general.problem import least_ratio
 from ..jobs import Progress, Watch
 from ..model.settings import CurveSettings, Solver
 from ..model.sizes import Sizes, Wanted
-from .interface import Engine, Limits
+from .interface import FollowingEngine, Limits
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,14 +23,10 @@ def _limits(found: Boundaries) -> Limits:
     return Limits(found.beta_lim, found.beta_stick, found.beta_stick_contact, found.begins, found.ends)
 
 
-class GeneralEngine(Engine):
+class GeneralEngine(FollowingEngine):
     """Any piecewise linear system: its motion is followed from a phase of the load to the next return."""
 
-    has_closed_limits = False
     intervals = INTERVALS
-    states_status = True
-    compares_starts = False
-    order_step = 1
 
     @property
     def kernels(self) -> str:
@@ -39,15 +35,6 @@ class GeneralEngine(Engine):
     @property
     def least_ratio(self) -> float:
         return least_ratio(self.system)
-
-    @property
-    def least_stick_ratio(self) -> float:
-        return 0.0
-
-    def check_static(self, mu: np.ndarray) -> None:
-        from ..general.dataset import refuse_static
-
-        refuse_static(self.system.contact_system, mu)
 
     @property
     def outputs(self) -> tuple[str, ...]:

@@ -186,3 +186,22 @@ class Engine(ABC):
     @abstractmethod
     def states(self, r: np.ndarray, beta: np.ndarray, mu: float) -> "list[States]":
         """First harmonics of the possible steady states at points (k,); see `steady.points`."""
+
+
+class FollowingEngine(Engine):
+    """An engine that follows every motion from a phase of the load to the next return."""
+
+    has_closed_limits = False
+    intervals = 1
+    states_status = True
+    compares_starts = False
+    order_step = 1
+
+    @property
+    def least_stick_ratio(self) -> float:
+        return 0.0
+
+    def check_static(self, mu: np.ndarray) -> None:
+        from ..general.dataset import refuse_static
+
+        refuse_static(self.system.contact_system, mu)

@@ -26,7 +26,7 @@ def bank_curves(
     check_ratios(system, axes["r"])
 
     def find(i: int, beta: float, _: float) -> Cycle:
-        return find_cycle(system, float(axes["r"][i]), beta, solver)  # type: ignore[return-value]
+        return find_cycle(system, float(axes["r"][i]), beta, solver)
 
     limits = limit_variables(system, axes["r"])
     return curve_dataset(system, axes, asked, find, limits, progress, watch)

@@ -1,51 +1,24 @@
 """A steady motion at the points of integrals over a cycle."""
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import NoSteadyState
 from ..model.settings import Solver
 from ..model.system import System
-from ..phases.arrays import Modal
-from ..phases.cycle import SECTION, Points
+from ..phases.cycle import NODES, SECTION, TURN, WEIGHTS, Cycle, Points
 from .given import bank_system, no_slip_limits, starts_of
 from .motion import Steps, at_times, traces_at
 from .solve import Found, find_motion
 
-#: Gauss points of a part of a step, and the largest turn of a harmonic in a part: with these the integral of
-#: a polynomial of the degree of a series times the harmonic is exact to rounding.
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
-_TURN = 4.0
 
+@dataclass(frozen=True)
+class BankCycle(Cycle):
+    """A steady motion of a system with banks: its steps differ in length."""
 
-class BankCycle(NamedTuple):
-    """A steady motion and the structure that it is of, with the names of `phases.cycle.Cycle`."""
-
-    system: System
-    r: float
-    found: Found
-    steps: Steps
-
-    @property
-    def modal(self) -> Modal:
-        """Modes, (n, m) in `phi`."""
-        return self.found.modes
-
-    @property
-    def period(self) -> int:
-        """Periods of the load."""
-        return self.found.period
-
-    @property
-    def drifts(self) -> bool:
-        """Whether the motion is another one after each period: springs hold every structure here."""
-        return False
-
-    @property
-    def begins(self) -> np.ndarray:
-        """Times at which the steps begin."""
-        return self.steps.begins
+    found: Found  # type: ignore[assignment]  # the same names
+    steps: Steps  # type: ignore[assignment]
 
     def displacements(self, tau: np.ndarray, order: int = 0, row: int | slice = slice(None)) -> np.ndarray:
         """Displacements of the masses, or with `order` 1 their derivatives by tau; of one row or all."""
@@ -56,9 +29,9 @@ class BankCycle(NamedTuple):
         """The motion at Gauss points that are dense enough for harmonics up to `highest`."""
         steps = self.steps
         own = steps.lengths * steps.ends
-        many = max(1, int(np.ceil(highest * own.max() / _TURN)))
-        edges = ((np.arange(many)[:, np.newaxis] + 0.5 * (_NODES + 1.0)) / many).ravel()
-        weights = np.tile(0.5 * _WEIGHTS / many, many) * own[:, np.newaxis]
+        many = max(1, int(np.ceil(highest * own.max() / TURN)))
+        edges = ((np.arange(many)[:, np.newaxis] + 0.5 * (NODES + 1.0)) / many).ravel()
+        weights = np.tile(0.5 * WEIGHTS / many, many) * own[:, np.newaxis]
         step = np.repeat(np.arange(own.size), edges.size)
         x = (steps.ends[:, np.newaxis] * edges).ravel()
         found = traces_at(steps, self.modal.squares.size, step, x)

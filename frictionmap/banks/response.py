@@ -1,34 +1,18 @@
 """One steady motion in time, as labelled variables."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
-from ..datasets.labels import CONTACT_TRACES, LABELS, OLDER_NAMES
-from ..datasets.variables import coordinate, label_variable
-from ..general.dataset import contact_coordinates, refuse_static
-from ..general.response import contact_trace, load_over, of_cell
-from ..model.settings import HARMONICS, Solver
+from ..general.dataset import refuse_static
+from ..general.response import load_over
+from ..model.settings import Solver
 from ..model.system import System
-from ..phases.cycle import SECTION, cycle_values
-from ..phases.dataset import has_output
+from ..phases.cycle import SECTION, in_contacts
+from ..phases.response import motion_dataset
 from .cycle import BankCycle, find_cycle
 from .dataset import TABLE, limit_variables
 from .given import check_ratios
 from .motion import at_times
-
-
-def _base_motion(cycle: BankCycle, tau: np.ndarray) -> np.ndarray:
-    """Displacement of the base."""
-    base = cycle.system.at_frequency(cycle.r).contact_system.base
-    return np.sum([(one * np.exp(1j * n * tau)).real for n, one in base.items()], axis=0) + 0.0 * tau
-
-
-def _displacements(cycle: BankCycle, q: np.ndarray, tau: np.ndarray) -> np.ndarray:
-    """Displacements in the contacts, (N, T)."""
-    problem = cycle.found.problem
-    return np.asarray(problem.chi @ q - problem.moved[:, np.newaxis] * _base_motion(cycle, tau))
 
 
 def _traces(cycle: BankCycle, tau: np.ndarray) -> dict[str, np.ndarray]:
@@ -37,7 +21,8 @@ def _traces(cycle: BankCycle, tau: np.ndarray) -> dict[str, np.ndarray]:
     found, general = at_times(steps, cycle.modal.squares.size, tau), cycle.system.contact_system
     slips = steps.level[found.step].T > 0
     traces = {
-        "x": phi @ found.q, "v": phi @ found.rate, "z": _displacements(cycle, found.q, tau),
+        "x": phi @ found.q, "v": phi @ found.rate,
+        "z": in_contacts(cycle, cycle.found.problem.chi @ found.q, tau),
         "friction": found.friction,
         "direction": np.where(slips, steps.sense[found.step].T, 0).astype(np.int8),
     }  # fmt: skip
@@ -58,7 +43,7 @@ def _events(cycle: BankCycle) -> dict[str, np.ndarray]:
     values: dict[str, np.ndarray] = {
         "event_tau": tau,
         "event_direction": state[k, j].astype(np.int8),
-        "event_z": _displacements(cycle, q, tau)[j, np.arange(j.size)],
+        "event_z": in_contacts(cycle, cycle.found.problem.chi @ q, tau)[j, np.arange(j.size)],
     }
     if state.shape[1] > 1:
         values["event_contact"] = j + 1
@@ -69,29 +54,9 @@ def bank_response(
     system: System, r: float, beta: float, mu: float, solver: Solver, points: int
 ) -> xr.Dataset:
     """Compute one steady motion in time; see `response`."""
-    general = system.contact_system
-    refuse_static(general, np.array([mu]))
+    refuse_static(system.contact_system, np.array([mu]))
     check_ratios(system, np.array([r]))
     cycle = find_cycle(system, r, beta, solver)
     tau = np.linspace(0.0, 2.0 * np.pi, points + 1)
-    variables = {
-        name: contact_trace(name, values, general.count)
-        if name in CONTACT_TRACES
-        else label_variable(name, values)
-        for name, values in _traces(cycle, tau).items()
-    }
-    variables |= {name: label_variable(name, one) for name, one in _events(cycle).items()}
-    for old, new in OLDER_NAMES["response"].items():
-        variables[old] = variables[new].copy(deep=False)
-    numbers = {name: cycle.found.numbers[name] for name in TABLE if has_output(name, general)}
-    for name, values in (numbers | cycle_values(cycle, HARMONICS)).items():  # type: ignore[arg-type]
-        variables[name] = of_cell(
-            name, np.asarray(values).astype(LABELS[name].dtype), general.count, "response"
-        )
-    variables |= {name: one.squeeze() for name, one in limit_variables(system, np.array([r])).items()}
-    own: dict[str, Any] = {
-        "tau": tau, "dof": np.array(system.dofs.numbers), "harmonic": np.arange(HARMONICS + 1),
-        "part": np.array(["real", "imaginary"]), "r": r, "beta": beta, "mu": mu,
-    }  # fmt: skip
-    coords = {name: coordinate(name, values) for name, values in own.items()}
-    return xr.Dataset(variables, coords=coords | contact_coordinates(system))
+    limits = limit_variables(system, np.array([r]))
+    return motion_dataset(cycle, beta, mu, tau, _traces(cycle, tau), _events(cycle), limits, TABLE)

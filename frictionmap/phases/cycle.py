@@ -1,5 +1,6 @@
 """Quantities of a steady motion over a cycle: harmonics, works, phases."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -13,8 +14,8 @@ from .solve import Found
 
 #: Gauss points of a part of a step, and the largest turn of a harmonic in a part: with these the integral of
 #: a polynomial of the degree of a series times the harmonic is exact to rounding.
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
-_TURN = 4.0
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
+TURN = 4.0
 
 #: Phasor that is not known.
 _UNKNOWN = complex(np.nan, np.nan)
@@ -30,7 +31,8 @@ class Points(NamedTuple):
     friction: np.ndarray  # (N, T)
 
 
-class Cycle(NamedTuple):
+@dataclass(frozen=True)
+class Cycle:
     """A steady motion and the structure that it is of."""
 
     system: System
@@ -66,12 +68,12 @@ class Cycle(NamedTuple):
 
     def points(self, highest: int) -> Points:
         """The motion at Gauss points that are dense enough for harmonics up to `highest`."""
-        steps, many = self.steps, max(1, int(np.ceil(highest * self.steps.h / _TURN)))
+        steps, many = self.steps, max(1, int(np.ceil(highest * self.steps.h / TURN)))
         count = steps.begins.size
-        edges = (np.arange(many)[:, np.newaxis] + 0.5 * (_NODES + 1.0)) / many  # of a step of length 1
+        edges = (np.arange(many)[:, np.newaxis] + 0.5 * (NODES + 1.0)) / many  # of a step of length 1
         step = np.repeat(np.arange(count), edges.size)
         x = (steps.lengths[:, np.newaxis] * edges.ravel()).ravel()
-        own = np.tile(0.5 * _WEIGHTS / many, (count, many)) * steps.lengths[:, np.newaxis] * steps.h
+        own = np.tile(0.5 * WEIGHTS / many, (count, many)) * steps.lengths[:, np.newaxis] * steps.h
         found = traces_at(steps, self.modal.squares.size, step, x)
         tau = SECTION + steps.begins[step] + x * steps.h
         return Points(tau, own.ravel(), found.q, found.rate, found.friction)

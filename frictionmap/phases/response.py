@@ -1,5 +1,6 @@
 """One steady motion in time, as labelled variables."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -114,6 +115,35 @@ def _events(cycle: Cycle, shown: int, begin: float) -> dict[str, np.ndarray]:
     return values
 
 
+def motion_dataset(
+    cycle: Cycle, beta: float, mu: float, tau: np.ndarray, traces: dict[str, np.ndarray],
+    happened: dict[str, np.ndarray], limits: dict[str, xr.Variable], outputs: Iterable[str],
+) -> xr.Dataset:  # fmt: skip
+    """Label one steady motion: traces over tau, events, outputs and quantities of its cycle, boundaries."""
+    system, general = cycle.system, cycle.system.contact_system
+    variables: dict[str, xr.Variable] = {}
+    for name, values in traces.items():
+        is_of_contact = name in CONTACT_TRACES
+        variables[name] = (
+            contact_trace(name, values, general.count) if is_of_contact else label_variable(name, values)
+        )
+    variables |= {name: label_variable(name, one) for name, one in happened.items()}
+    for old, new in OLDER_NAMES["response"].items():
+        variables[old] = variables[new].copy(deep=False)
+    numbers = {name: cycle.found.numbers[name] for name in outputs if has_output(name, general)}
+    for name, values in (numbers | cycle_values(cycle, HARMONICS)).items():
+        variables[name] = of_cell(
+            name, np.asarray(values).astype(LABELS[name].dtype), general.count, "response"
+        )
+    variables |= {name: one.squeeze() for name, one in limits.items()}
+    own: dict[str, Any] = {
+        "tau": tau, "dof": np.array(system.dofs.numbers), "harmonic": np.arange(HARMONICS + 1),
+        "part": np.array(["real", "imaginary"]), "r": cycle.r, "beta": beta, "mu": mu,
+    }  # fmt: skip
+    coords = {name: coordinate(name, values) for name, values in own.items()}
+    return xr.Dataset(variables, coords=coords | contact_coordinates(system) | spring_coordinates(system))
+
+
 def phase_response(
     system: System, r: float, beta: float, mu: float, solver: Solver, points: int
 ) -> xr.Dataset:
@@ -121,35 +151,15 @@ def phase_response(
 
     An irregular motion has the comment on it among its attributes.
     """
-    general = system.contact_system
-    refuse_static(general, np.array([mu]))
+    refuse_static(system.contact_system, np.array([mu]))
     check_ratios(system, np.array([r]))
     given = phase_system(system, r)
     cycle = find_cycle(system, given, r, beta, mu, solver)
     shown, begin = _shown(cycle)
     tau = np.linspace(0.0, 2.0 * np.pi * shown, points * shown + 1)
-    variables: dict[str, xr.Variable] = {}
-    for name, values in _traces(cycle, given, tau, begin).items():
-        is_of_contact = name in CONTACT_TRACES
-        variables[name] = (
-            contact_trace(name, values, general.count) if is_of_contact else label_variable(name, values)
-        )
-    variables |= {name: label_variable(name, one) for name, one in _events(cycle, shown, begin).items()}
-    for old, new in OLDER_NAMES["response"].items():
-        variables[old] = variables[new].copy(deep=False)
-    numbers = {name: cycle.found.numbers[name] for name in TABLE if has_output(name, general)}
-    for name, values in (numbers | cycle_values(cycle, HARMONICS)).items():
-        variables[name] = of_cell(
-            name, np.asarray(values).astype(LABELS[name].dtype), general.count, "response"
-        )
+    traces, happened = _traces(cycle, given, tau, begin), _events(cycle, shown, begin)
     limits = limit_variables(system, np.array([r]), np.array([mu]))
-    variables |= {name: one.squeeze() for name, one in limits.items()}
-    own: dict[str, Any] = {
-        "tau": tau, "dof": np.array(system.dofs.numbers), "harmonic": np.arange(HARMONICS + 1),
-        "part": np.array(["real", "imaginary"]), "r": r, "beta": beta, "mu": mu,
-    }  # fmt: skip
-    coords = {name: coordinate(name, values) for name, values in own.items()}
-    ds = xr.Dataset(variables, coords=coords | contact_coordinates(system) | spring_coordinates(system))
+    ds = motion_dataset(cycle, beta, mu, tau, traces, happened, limits, TABLE)
     comment = impact_comment(system, np.asarray(cycle.found.numbers["open_fraction"]))
     if not cycle.period:
         comment = EXCERPT.format(shown=shown, followed=int(cycle.found.numbers["cycles"]))

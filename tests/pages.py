@@ -14,6 +14,17 @@ from frictionmap.files.config import load_config
 #: Seconds after which what does not come counts as hung, on a machine ten times as slow as a slow one.
 HANG = 120.0
 
+#: A configuration of one mass.
+ONE = """\
+title = "One mass"
+[system]
+contact = "fixed-wall"
+[grid]
+r = [0.0, 2.0]
+beta = [0.0, 1.2]
+mu = [1.0, 1.5]
+"""
+
 #: A configuration whose contact is between the masses.
 TWO_MASSES = """\
 [system]

@@ -2,17 +2,7 @@
 
 import pytest
 from browser import page_of, point
-from pages import scene_from, served
-
-ONE = """\
-title = "One mass"
-[system]
-contact = "fixed-wall"
-[grid]
-r = [0.0, 2.0]
-beta = [0.0, 1.2]
-mu = [1.0, 1.5]
-"""
+from pages import ONE, scene_from, served
 
 #: A screen, a phone, a small window such as a screen at 200 %.
 VIEWS = {

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from browser import DONE, MOVE, area, page_of, point, repainted
 from conftest import ROOT
-from pages import TWO_MASSES, scene_from, served
+from pages import ONE, TWO_MASSES, scene_from, served
 from test_explore_contacts import BELT, ELASTIC, TWO
 
 import frictionmap as fm
@@ -15,15 +15,6 @@ from frictionmap.explorer.presets import PRESETS, preset_scene
 from frictionmap.explorer.scene import scene_of
 from frictionmap.files.config import config_of, load_config
 
-ONE = """\
-title = "One mass"
-[system]
-contact = "fixed-wall"
-[grid]
-r = [0.0, 2.0]
-beta = [0.0, 1.2]
-mu = [1.0, 1.5]
-"""
 LARGE = {"width": 1280, "height": 800}
 
 #: Scripts: go to moments, and read there where masses are and which lights are on; what is running.

@@ -5,21 +5,12 @@ import re
 import numpy as np
 import pytest
 from browser import DONE, MOVE, page_of, repainted
-from pages import scene_from, served
+from pages import ONE, scene_from, served
 from test_explore_alive import TIME
 from test_explore_contacts import ELASTIC, TWO
 
 import frictionmap as fm
 
-ONE = """\
-title = "One mass"
-[system]
-contact = "fixed-wall"
-[grid]
-r = [0.0, 2.0]
-beta = [0.0, 1.2]
-mu = [1.0, 1.5]
-"""
 LARGE = {"width": 1280, "height": 800}
 MOTION = "#motion .drawing .mass"
 

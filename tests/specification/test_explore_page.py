@@ -8,7 +8,7 @@ import urllib.parse
 import numpy as np
 import pytest
 from browser import DONE, MOVE, area, colours, page_of, point, repainted, wanted
-from pages import TWO_MASSES, packet, scene_from, served
+from pages import ONE, TWO_MASSES, packet, scene_from, served
 
 import frictionmap as fm
 from frictionmap.explorer import stored
@@ -16,15 +16,6 @@ from frictionmap.files.config import config_of
 from frictionmap.pictures.classes import classes
 from frictionmap.pictures.palette import CLASSES
 
-ONE = """\
-title = "One mass"
-[system]
-contact = "fixed-wall"
-[grid]
-r = [0.0, 2.0]
-beta = [0.0, 1.2]
-mu = [1.0, 1.5]
-"""
 SMALL = {"width": 400, "height": 400}
 
 

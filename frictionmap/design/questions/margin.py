@@ -91,7 +91,7 @@ _BOUNDARIES = (
 
 
 def _regime_sentence(ds: "xr.Dataset") -> Iterator[str]:
-    """What the contact does at the working point, as far as the boundaries tell."""
+    """What the contact does at the working point, as far as the boundaries show it."""
     if not {"beta", "at_r"} <= set(ds.variables):
         return
     words, beta = amounts_of(ds), float(ds["beta"])

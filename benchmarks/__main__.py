@@ -3,43 +3,46 @@
 import argparse
 import math
 import os
+import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from importlib import import_module
 from pathlib import Path
 
 from . import RESULTS
+from .report.record import complete, kept
 
 # one thread each, before any library is loaded
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
 
 #: Sub-commands: each has a module of its name in `measures` with a `run`, imported only when it is asked for.
-BENCHMARKS = (
-    "accuracy",
-    "peers",
-    "scaling",
-    "startup",
-    "stress",
-    "steady",
-    "structures",
-    "general",
-    "laws",
-    "design",
-    "static",
-    "bound",
-    "large",
-    "explore",
-    "first_minute",
-    "coupling",
-    "coverage",
-    "consistency",
-    "spectrum",
-    "histories",
-    "banks",
-)
+#: The seconds are those of a whole run on a quiet machine with two processors, compilation included.
+BENCHMARKS = {
+    "accuracy": 100,
+    "peers": 100,
+    "scaling": 100,
+    "startup": 100,
+    "stress": 100,
+    "steady": 100,
+    "structures": 100,
+    "general": 100,
+    "laws": 100,
+    "design": 100,
+    "static": 100,
+    "bound": 100,
+    "large": 100,
+    "explore": 100,
+    "first_minute": 100,
+    "coupling": 100,
+    "coverage": 100,
+    "consistency": 100,
+    "spectrum": 100,
+    "histories": 100,
+    "banks": 100,
+}
 
 
 def _run(name: str, quick: bool, results: Path, **more: Path) -> float:
@@ -48,10 +51,12 @@ def _run(name: str, quick: bool, results: Path, **more: Path) -> float:
     began = time.perf_counter()
     run: Callable[..., dict] = import_module(f".measures.{name}", __package__).run
     run(quick, results, **more)
-    return time.perf_counter() - began
+    taken = time.perf_counter() - began
+    complete(name, results, taken, quick)
+    return taken
 
 
-def _run_apart(name: str, _: bool, results: Path) -> float:
+def _run_apart(name: str, results: Path) -> float:
     """Run one of several benchmarks in a process of its own: memory and caches of another would count.
 
     One that fails stops none of the others; its seconds are nan.
@@ -59,6 +64,24 @@ def _run_apart(name: str, _: bool, results: Path) -> float:
     began = time.perf_counter()
     done = subprocess.run([sys.executable, "-m", __package__, name, "--results", str(results)])
     return math.nan if done.returncode else time.perf_counter() - began
+
+
+def _minutes(names: Iterable[str]) -> str:
+    return f"{math.ceil(sum(BENCHMARKS[name] for name in names) / 60)} min"
+
+
+def _run_all(names: list[str], results: Path) -> dict[str, float]:
+    """Run benchmarks whose results are not there yet, and say before each how long the rest will take."""
+    waiting = [name for name in names if not kept(name, results)]
+    print("measured on this commit and machine before:", *(set(names) - set(waiting) or ["none"]))
+    print(f"on a quiet machine with two processors: about {_minutes(waiting)}", flush=True)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # ends the running benchmark, too
+    seconds = {}
+    for k, name in enumerate(waiting):
+        left = f"{_minutes([name])} of {_minutes(waiting[k:])} left"
+        print(f"\n{time.strftime('%H:%M')} {k + 1} of {len(waiting)}, about {left}", end="", flush=True)
+        seconds[name] = _run_apart(name, results)
+    return seconds
 
 
 def main() -> None:
@@ -95,8 +118,10 @@ def main() -> None:
         parser.error("page goes alone: it quotes results that are there")
     names = [name for name in BENCHMARKS if {name, "all"} & set(options.benchmarks)]
     results = options.results or RESULTS / "local"
-    run = _run if options.quick or len(names) == 1 else _run_apart
-    seconds = {name: run(name, options.quick, results, **more) for name in names}
+    if options.quick or len(names) == 1:
+        seconds = {name: _run(name, options.quick, results, **more) for name in names}
+    else:
+        seconds = _run_all(names, results)
     print()
     for name, taken in seconds.items():
         print(f"{name:10} failed" if math.isnan(taken) else f"{name:10} took {taken:6.1f} s")

@@ -1,4 +1,4 @@
-"""Computing time against cells, threads, low frequency and share of open cells; lower bound per segment.
+"""Computing time against cells, samples, harmonics, threads, low frequency, open cells; lower bound.
 
 The map is that of T Fig. 3.12 (joined base-wall, no damping, r to 2.5, beta to 4) unless said otherwise, with
 the three default outputs.  Every timing is of a whole `frictionmap.sweep`, labels and memory included.
@@ -6,6 +6,8 @@ the three default outputs.  Every timing is of a whole `frictionmap.sweep`, labe
 cells           the map on successively finer grids, which all contain the points of the first: there regimes
                 and stops must be the same, amplitudes to rounding (for mu = 1 a cell starts from the orbit
                 of its neighbour).  Sizes that would not fit into memory are skipped with a message.
+memory          peak memory of maps and of friction response spectra in new processes, compiled before
+harmonics       stick-slip cells in rows of a map under square waves of up to 200 harmonics
 threads         one map on 1 to all processors, alternating; results must be equal to the bit.
 low frequency   cells of a fixed wall between beta_lim and beta_stick, down to r = 1e-4: one excitation period
                 holds 1/r natural ones.  Stops and amplitude must not depend on the scan step.
@@ -13,13 +15,17 @@ open cells      a fixed wall at beta up to 1, where all cells are open, and incr
                 formula gives permanent sticking: the open cells are of the same kind in every map.
 phases          nanoseconds per slide or stop, and those of its closed forms alone: see `floor`.
 
-Cost against the number of masses is in `structures`.
+Cost against the number of masses is in `structures`, against that of contacts in `general`.  A slope is that
+of the logarithms, over the upper half of the sizes: 1 is proportional.
 """
 
+import math
 import os
 import tracemalloc
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -30,9 +36,13 @@ import frictionmap as fm
 from frictionmap import regimes
 from frictionmap.checks import threads as usable_threads
 
+from ..peers.contacts import ContactBody
 from ..report.figures import new_figure, save_figure
 from ..report.record import pinned, save, spread, table, timed
 from .floor import phase_floor
+from .general.cost import rows_at, seconds_a_cell
+from .general.scenes import Scene, square_wave
+from .spectrum import record
 
 #: Intervals of the coarsest grid in r and beta, and how many times finer the others are: 10^3 to 10^8 cells.
 COARSEST = (25, 40)
@@ -42,6 +52,16 @@ QUICK_CELLS = 1.2e5
 
 #: Share of the free memory that a map may take.
 MEMORY = 0.7
+
+#: Sizes in new processes, 10^3 to 10^8 and more: maps, times finer than the coarsest; samples of a record,
+#: with the periods of its spectrum, which has as many friction forces.
+FINER_APART = (1, 3, 10, 31, 100, 316)
+RECORDS_APART = ((16, 8), (160, 8), (1600, 8), (16_000, 8), (160_000, 8), (1_600_000, 8), (800_000, 32))
+QUICK_APART = 3
+
+#: Highest harmonic of the square wave; rows and cells of a row, by quick.
+HARMONICS = (1, 5, 20, 50, 100, 200)
+HARMONIC_ROWS = {False: (6, 100), True: (1, 20)}
 
 #: r, and how many cells: fewer where each takes longer.
 LOW = (
@@ -152,6 +172,79 @@ def cells_cost(quick: bool) -> dict:
             )
     table(("mu", "cells", "seconds", "ns a cell", "shared cells", "Z off by"), rows)
     return content
+
+
+def slope(sizes: Sequence[float], values: Sequence[float]) -> float:
+    """Exponent by which values grow with sizes, over the upper half of them."""
+    half = min(len(sizes) // 2, len(sizes) - 2)
+    return float(np.polyfit(np.log(sizes[half:]), np.log(values[half:]), 1)[0])
+
+
+# ---------------------------------------------------------------- memory
+
+
+def peak_memory() -> float:
+    """Largest memory of this process so far [MB]; nan where the system does not report it."""
+    try:
+        lines = Path("/proc/self/status").read_text().splitlines()
+    except OSError:
+        return math.nan
+    return next(float(line.split()[1]) * 1.024e-3 for line in lines if line.startswith("VmHWM"))
+
+
+def map_apart(finer: int) -> dict:
+    """Size, time and memory of a map in a process of its own."""
+    system = fm.System(contact="joined-base-wall")
+    fm.sweep(system, *grid(1), threads=1)  # compiles
+    r, beta = grid(finer)
+    before = peak_memory()
+    seconds, _ = timed(lambda: fm.sweep(system, r, beta, threads=1))
+    return {"size": r.size * beta.size, "seconds": seconds, "MB before": before, "MB": peak_memory()}
+
+
+def spectrum_apart(size: tuple[int, int]) -> dict:
+    """Measure a friction response spectrum likewise; its size is that of the record times the oscillators."""
+    samples, count = size
+    periods, friction = np.geomspace(0.15, 4.0, count), np.geomspace(0.01, 0.8, count)
+    fm.spectrum(record(16), periods, friction, damping=0.05, threads=1)  # compiles
+    given = record(samples)
+    before = peak_memory()
+    seconds, _ = timed(lambda: fm.spectrum(given, periods, friction, damping=0.05, threads=1))
+    return {"size": samples * count**2, "seconds": seconds, "MB before": before, "MB": peak_memory()}
+
+
+def memory_cost(quick: bool) -> dict:
+    """Time and peak memory against the cells of a map and the samples of a spectrum."""
+    content = {}
+    for name, measure, sizes in (
+        ("cells of a map", map_apart, FINER_APART),
+        ("samples of a spectrum", spectrum_apart, RECORDS_APART),
+    ):
+        with ProcessPoolExecutor(1, mp_context=get_context("spawn"), max_tasks_per_child=1) as apart:
+            rows = list(apart.map(measure, sizes[: QUICK_APART if quick else None]))
+        found, seconds = [row["size"] for row in rows], [row["seconds"] for row in rows]
+        content[name] = {"runs": rows, "slope of the time": slope(found, seconds)}
+        table((name, "seconds", "MB before", "MB"), [tuple(row.values()) for row in rows])
+        print(f"time grows as the power {content[name]['slope of the time']:.2f}")
+    return content
+
+
+# ---------------------------------------------------------------- harmonics
+
+
+def harmonics_cost(quick: bool) -> dict:
+    """Time per stick-slip cell in rows of a map against the highest harmonic of a square wave."""
+    rows, cells = HARMONIC_ROWS[quick]
+    found = []
+    for highest in HARMONICS[: 2 if quick else None]:
+        scene = Scene(ContactBody(((1,),), square_wave(highest), 1, 0.05), (1.0,))
+        these = rows_at(scene.system(), np.geomspace(*scene.frequencies, rows), cells)
+        per_cell = [seconds_a_cell(these) for _ in range(LEAST_RUNS)]
+        found.append({"highest harmonic": highest, "us a cell": spread([1e6 * t for t in per_cell])})
+    sizes = [row["highest harmonic"] for row in found]
+    times = [row["us a cell"]["median"] for row in found]
+    table(("highest harmonic", "us a cell"), list(zip(sizes, times, strict=True)))
+    return {"rows": found, "slope": slope(sizes, times)}
 
 
 # ---------------------------------------------------------------- threads
@@ -298,13 +391,30 @@ def open_cells_cost(quick: bool) -> dict:
 def _draw_cells(axes: Axes, found: dict) -> None:
     for (name, rows), marker in zip(found["maps"].items(), "os", strict=False):
         done = [row for row in rows if "seconds" in row]
-        axes.loglog(
-            [row["cells"] for row in done],
-            [row["seconds"]["median"] for row in done],
-            marker=marker,
-            label=f"{name}: {done[-1]['ns a cell'] / 1e3:.2g} µs a cell at the end",
-        )
+        sizes, times = [row["cells"] for row in done], [row["seconds"]["median"] for row in done]
+        end = f"{done[-1]['ns a cell'] / 1e3:.2g} µs a cell at the end, power {slope(sizes, times):.2f}"
+        axes.loglog(sizes, times, marker=marker, label=f"{name}: {end}")
     axes.set(xlabel="cells of the map", ylabel="time [s]", title="Maps: a fixed cost, then so much a cell")
+    axes.legend(loc="upper left", fontsize=8)
+
+
+def _draw_memory(axes: Axes, found: dict) -> None:
+    for (name, entry), marker in zip(found.items(), "os", strict=True):
+        rows = entry["runs"]
+        label = f"{name}: time grows as the power {entry['slope of the time']:.2f}"
+        axes.loglog([row["size"] for row in rows], [row["MB"] for row in rows], marker=marker, label=label)
+    axes.set(xlabel="cells, samples", ylabel="peak memory of the process [MB]", title="Memory")
+    axes.set_ylim(bottom=100.0)
+    axes.legend(loc="upper left", fontsize=8)
+
+
+def _draw_harmonics(axes: Axes, found: dict) -> None:
+    rows = found["rows"]
+    axes.loglog(
+        [row["highest harmonic"] for row in rows], [row["us a cell"]["median"] for row in rows], "o-",
+        label=f"power {found['slope']:.2f} at the end",
+    )  # fmt: skip
+    axes.set(xlabel="highest harmonic", ylabel="time a stick-slip cell [µs]", title="Square waves")
     axes.legend(loc="upper left")
 
 
@@ -372,11 +482,15 @@ def _draw_floor(axes: Axes, found: dict) -> None:
 
 
 def draw(content: dict, path: Path) -> None:
-    """Draw five panels."""
-    figure = new_figure(13.0, 8.0)
+    """Draw seven panels."""
+    figure = new_figure(13.0, 11.5)
     figure.suptitle("How cost grows (one mass; one thread unless said otherwise)")
-    panels = figure.subplot_mosaic([["cells", "threads", "open"], ["low", "floor", "floor"]])
+    panels = figure.subplot_mosaic(
+        [["cells", "memory", "harmonics"], ["threads", "open", "low"], ["floor", "floor", "floor"]]
+    )
     _draw_cells(panels["cells"], content["cells"])
+    _draw_memory(panels["memory"], content["memory"])
+    _draw_harmonics(panels["harmonics"], content["harmonics"])
     _draw_threads(panels["threads"], content["threads"])
     _draw_open(panels["open"], content["open cells"])
     _draw_low(panels["low"], content["low frequency"])
@@ -393,6 +507,8 @@ def run(quick: bool, results: Path) -> dict:
         content = {"processors of this process": os.cpu_count(), "cells": cells_cost(quick)}
     content["threads"] = threads_cost(quick)  # on all processors
     with pinned():
+        content["memory"] = memory_cost(quick)
+        content["harmonics"] = harmonics_cost(quick)
         content["low frequency"] = low_frequency_cost(quick)
         content["open cells"] = open_cells_cost(quick)
     content["phases"] = phase_floor(quick)

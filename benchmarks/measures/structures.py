@@ -44,6 +44,7 @@ from ..report.figures import new_figure, save_figure
 from ..report.record import pinned, save, spread, timed
 from .own_entry import own_entry
 from .own_kernel import cells_by_kernel
+from .scaling import slope
 
 MASSES = (1, 2, 5, 20, 50)
 BETA = 0.5
@@ -200,6 +201,22 @@ def step_line(found: dict) -> tuple[float, float]:
     return float(slope), float(constant)
 
 
+def measured(found: dict) -> dict[str, list[float]]:
+    """Nanoseconds over the number of masses."""
+    rows = [found[str(masses)] for masses in MASSES]
+    return {
+        "integrated cell": [1e3 * row["map"]["us a cell"]["median"] for row in rows],
+        "boundaries of a frequency": [1e3 * row["us a boundary evaluation"]["median"] for row in rows],
+        "slide or stop": [row["ns a phase"] for row in rows],
+        "scan step": [row["fit: ns a scan step"] for row in rows],
+    }
+
+
+def powers(found: dict) -> dict[str, float]:
+    """Powers of the number of masses by which times grow, at its upper end; the scan step has its line."""
+    return {name: slope(MASSES, times) for name, times in measured(found).items() if name != "scan step"}
+
+
 def cost(quick: bool) -> dict:
     """Measure and print the computing time against the number of masses."""
     repeats = 10 if quick else 50
@@ -222,9 +239,10 @@ def cost(quick: bool) -> dict:
             f"{cell['us a cell']['median']:8.1f}",
             flush=True,
         )
-    slope, constant = step_line(content)
-    print(f"a scan step of N masses takes {constant:.3g} + {slope:.3g} N ns")
-    content["ns a scan step, line over masses"] = {"constant": constant, "a mass": slope}
+    per_mass, constant = step_line(content)
+    print(f"a scan step of N masses takes {constant:.3g} + {per_mass:.3g} N ns")
+    content["ns a scan step, line over masses"] = {"constant": constant, "a mass": per_mass}
+    content["powers of the number of masses"] = powers(content)
     return content
 
 
@@ -371,17 +389,9 @@ def draw(content: dict, path: Path) -> None:
     n = np.array(MASSES)
     figure = new_figure(10.0, 4.4)
     left, right = figure.subplots(1, 2)
-    rows = [found[str(masses)] for masses in MASSES]
-    for values, marker, label in (
-        ([1e3 * row["map"]["us a cell"]["median"] for row in rows], "D", "integrated cell of a map"),
-        (
-            [1e3 * row["us a boundary evaluation"]["median"] for row in rows],
-            "^",
-            "all boundaries at one frequency",
-        ),
-        ([row["ns a phase"] for row in rows], "o", "phase: a slide or a stop"),
-        ([row["fit: ns a scan step"] for row in rows], "s", "scan step"),
-    ):
+    growth = powers(found)
+    for (name, values), marker in zip(measured(found).items(), "D^os", strict=True):
+        label = f"{name}: power {growth[name]:.2f} at the end" if name in growth else name
         left.loglog(n, values, marker=marker, label=label)
     per_mass, alone = step_line(found)
     left.loglog(n, alone + per_mass * n, "k:", linewidth=1.0, label=f"{alone:.3g} + {per_mass:.2g} N ns")

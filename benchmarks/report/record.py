@@ -5,6 +5,7 @@ import math
 import os
 import platform
 import statistics
+import subprocess
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -12,9 +13,14 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TypeVar
 
+from .. import ROOT
+
 Result = TypeVar("Result")
 
 PACKAGES = ("numpy", "numba", "scipy", "xarray")
+
+#: What is measured, and by what: results and pages may differ from the commit.
+_MEASURED = ("frictionmap", "benchmarks", "configs", ":!benchmarks/results")
 
 
 def processor() -> str:
@@ -38,6 +44,20 @@ def machine() -> dict:
         "python": platform.python_version(),
         "versions": {name: version(name) for name in PACKAGES},
     }
+
+
+def commit() -> str | None:
+    """Commit of the measured code, "+" after it if its files were changed since; None outside of git."""
+
+    def git(*arguments: str) -> str:
+        command = ["git", "-C", str(ROOT), *arguments]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+    try:
+        changed = git("status", "--porcelain", "--", *_MEASURED)
+        return git("rev-parse", "--short=10", "HEAD") + ("+" if changed else "")
+    except (OSError, subprocess.CalledProcessError):
+        return None
 
 
 def spread(seconds: Sequence[float]) -> dict:
@@ -88,10 +108,38 @@ def finite(content: object) -> object:
     return None if isinstance(content, float) and not math.isfinite(content) else content
 
 
+def _path(name: str, folder: Path) -> Path:
+    return folder / f"{name}.json"
+
+
+def _write(content: dict, path: Path) -> None:
+    path.write_text(json.dumps(finite(content), indent=2, allow_nan=False) + "\n")
+
+
 def save(name: str, content: dict, folder: Path) -> Path:
-    """Write one result to a file."""
-    text = json.dumps(finite({"machine": machine(), **content}), indent=2, allow_nan=False)
+    """Write one result to a file, with the machine and the commit that were measured."""
     folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{name}.json"
-    path.write_text(text + "\n")
+    path = _path(name, folder)
+    _write({"machine": machine(), "commit": commit(), **content}, path)
     return path
+
+
+def complete(name: str, folder: Path, seconds: float, quick: bool) -> None:
+    """Note in a result that all of its benchmark was run, and how long that took."""
+    path = _path(name, folder)
+    _write({**json.loads(path.read_text()), "run": {"seconds": seconds, "quick": quick}}, path)
+
+
+def kept(name: str, folder: Path) -> bool:
+    """Whether a result is there and need not be measured again.
+
+    It is of a complete run in full, of this commit without changes, and of this machine with its packages.
+    """
+    try:
+        content = json.loads(_path(name, folder).read_text())
+    except (OSError, ValueError):  # none, or cut off by a kill
+        return False
+    now, here = commit(), machine()
+    same = all(content["machine"].get(key) == here[key] for key in here if key != "load")
+    clean = now is not None and not now.endswith("+")
+    return clean and same and content.get("commit") == now and content.get("run", {}).get("quick") is False

@@ -193,6 +193,26 @@ def _peer_lines(peers: dict | None, structures: dict | None) -> list[str]:
 # ---------------------------------------------------------------- growth
 
 
+def _growth_rows(scaling: dict) -> Iterator[tuple[str, ...]]:
+    """Memory, and powers by which times grow."""
+    for name, entry in scaling.get("memory", {}).items():
+        most = max(entry["runs"], key=lambda run: run["size"])
+        yield (
+            f"{most['size']:,} {name} in one process",
+            f"{duration(most['seconds'])}, {most['MB']:.0f} MB of memory, {most['MB before']:.0f} MB of them "
+            f"for the program; time grows as the power {entry['slope of the time']:.2f} of the size",
+        )
+    if "harmonics" in scaling:
+        first, *_, last = scaling["harmonics"]["rows"]
+        yield (
+            "stick-slip cell under a square wave of up to "
+            f"{first['highest harmonic']} and {last['highest harmonic']} harmonics",
+            f"{duration(1e-6 * first['us a cell']['median'])} and "
+            f"{duration(1e-6 * last['us a cell']['median'])}; the power is "
+            f"{scaling['harmonics']['slope']:.2f} at the end",
+        )
+
+
 def _scaling_rows(scaling: dict) -> Iterator[tuple[str, ...]]:
     for mu, rows in scaling["cells"]["maps"].items():
         done = [row for row in rows if "seconds" in row]
@@ -205,6 +225,7 @@ def _scaling_rows(scaling: dict) -> Iterator[tuple[str, ...]]:
         )
     memory = scaling["cells"]["bytes a cell"]
     yield "memory of the three default outputs", f"{two_digits(memory)} bytes per cell"
+    yield from _growth_rows(scaling)
     threads = scaling["threads"]["threads"]
     most = max(threads, key=int)
     yield (
@@ -305,6 +326,12 @@ def _mass_rows(structures: dict) -> Iterator[tuple[str, ...]]:
     step = f"{two_digits(line['constant'])} + {two_digits(line['a mass'])} N ns"
     yield "scan step of a structure with N masses", step
     cells = [entry["map"]["us a cell"]["median"] for entry in (special, general)]
+    counts = sorted(int(name) for name in cost if name.isdigit())
+    first, last = (cost[str(count)]["map"]["us a cell"]["median"] for count in (counts[0], counts[-1]))
+    text = f"{duration(1e-6 * first)} and {duration(1e-6 * last)}"
+    if "powers of the number of masses" in cost:
+        text += f"; the power is {cost['powers of the number of masses']['integrated cell']:.2f} at the end"
+    yield f"integrated cell of chains of {counts[0]} and {counts[-1]} masses", text
     yield (
         "one mass by its own kernel and by the code for structures",
         f"{duration(1e-9 * special['ns a phase'])} and {duration(1e-9 * general['ns a phase'])} per slide "
@@ -396,6 +423,21 @@ def _machine(found: dict[str, dict]) -> str:
     return f"Measured on: {'; '.join(lines)}."
 
 
+def _commits(found: dict[str, dict]) -> str:
+    """Sentence on the commits of the results; results of several commits are named, as a warning."""
+    names: dict[str, list[str]] = {}
+    for name, content in found.items():
+        names.setdefault(content.get("commit") or "not recorded", []).append(name)
+    if list(names) == ["not recorded"]:
+        return "The commit of these results was not recorded."
+    if len(names) == 1:
+        seconds = sum(content["run"]["seconds"] for content in found.values() if "run" in content)
+        taken = f", in {round(seconds / 60)} minutes" if seconds else ""
+        return f"All tables are of commit {next(iter(names))}{taken}."
+    parts = "; ".join(f"{', '.join(some)}: {one}" for one, some in names.items())
+    return f"**These results are of different commits**, so do not compare them with each other. {parts}."
+
+
 def block(results: Path) -> str:
     """Text of the page between the markers."""
     found = {
@@ -404,7 +446,7 @@ def block(results: Path) -> str:
         if (results / f"{name}.json").is_file()
     }
     peers, structures = found.get("peers"), found.get("structures")
-    lines = [_machine(found)]
+    lines = [_machine(found), "", _commits(found)]
     if peers or structures:
         lines += _peer_lines(peers, structures)
     if "general" in found:

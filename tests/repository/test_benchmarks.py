@@ -4,6 +4,7 @@ import ast
 import json
 import math
 import re
+import subprocess
 import sys
 import tomllib
 from importlib.metadata import PackageNotFoundError, packages_distributions, requires
@@ -34,6 +35,74 @@ def test_what_is_no_number_is_saved_as_none(tmp_path):
         "b": {"c": [None, None, 2]},
         "d": "nan",
     }
+
+
+def test_a_whole_result_of_this_commit_and_machine_is_kept(tmp_path, monkeypatch):
+    monkeypatch.setattr(record, "commit", lambda: "0123456789")
+    assert not record.kept("name", tmp_path)
+    record.save("name", {"seconds": [1.0]}, tmp_path)
+    assert not record.kept("name", tmp_path)  # perhaps cut off
+    record.complete("name", tmp_path, 4.0, True)
+    assert not record.kept("name", tmp_path)  # the quick form
+    record.complete("name", tmp_path, 90.0, False)
+    assert record.kept("name", tmp_path)
+    assert json.loads((tmp_path / "name.json").read_text())["seconds"] == [1.0]
+    monkeypatch.setattr(record, "PACKAGES", (*record.PACKAGES, "matplotlib"))
+    assert not record.kept("name", tmp_path)  # other packages than those that were measured
+
+
+@pytest.mark.parametrize("commit", ["abcdef0123", "0123456789+", None])
+def test_a_result_of_another_or_a_changed_commit_is_measured_again(commit, tmp_path, monkeypatch):
+    monkeypatch.setattr(record, "commit", lambda: "0123456789" if commit == "abcdef0123" else commit)
+    record.save("name", {}, tmp_path)
+    record.complete("name", tmp_path, 90.0, False)
+    monkeypatch.setattr(record, "commit", lambda: commit)
+    assert not record.kept("name", tmp_path)
+
+
+def test_a_result_that_a_kill_cut_off_is_measured_again(tmp_path):
+    path = record.save("name", {"seconds": [1.0]}, tmp_path)
+    record.complete("name", tmp_path, 90.0, False)
+    path.write_text(path.read_text()[:-20])
+    assert not record.kept("name", tmp_path)
+
+
+def git(folder, *arguments):
+    names = ("-c", "user.name=a", "-c", "user.email=a@b")
+    subprocess.run(["git", "-C", str(folder), *names, *arguments], check=True, capture_output=True)
+
+
+def test_the_commit_of_a_result_shows_whether_its_files_were_changed(tmp_path, monkeypatch):
+    monkeypatch.setattr(record, "ROOT", tmp_path)
+    assert record.commit() is None
+    for name in ("frictionmap/a.py", "benchmarks/results/a.json", "docs/results.md"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("1\n")
+    git(tmp_path, "init")
+    git(tmp_path, "add", ".")
+    git(tmp_path, "commit", "-m", "a")
+    clean = record.commit()
+    assert re.fullmatch("[0-9a-f]{10}", clean)
+    for name in ("benchmarks/results/a.json", "docs/results.md"):  # what a run writes
+        (tmp_path / name).write_text("2\n")
+    assert record.commit() == clean
+    (tmp_path / "frictionmap/a.py").write_text("2\n")
+    assert record.commit() == f"{clean}+"
+
+
+def test_results_of_different_commits_are_marked(tmp_path):
+    for name, commit in (("startup", "0123456789"), ("banks", "abcdef0123")):
+        content = json.loads((RESULTS / f"{name}.json").read_text())
+        (tmp_path / f"{name}.json").write_text(json.dumps({**content, "commit": commit}))
+    text = results_page.block(tmp_path)
+    assert "different commits" in text
+    assert "startup: 0123456789; banks: abcdef0123" in text
+    (tmp_path / "banks.json").unlink()
+    assert "All tables are of commit 0123456789" in results_page.block(tmp_path)
+
+
+def test_all_benchmarks_take_at_most_forty_minutes():
+    assert sum(BENCHMARKS.values()) <= 2400
 
 
 def named(requirement):

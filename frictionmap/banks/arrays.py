@@ -49,18 +49,29 @@ def row_of(system: BankSystem, problem: Problem, modes: Modal, r: float) -> Row:
     load = np.abs(parts[:, :, :-1]).sum(axis=(0, 1))
     size = float((load / (modes.squares + r * r)).max())
     chi = problem.chi**2
+    damping = np.linalg.norm(problem.damping, 2) if problem.coupled else np.diag(problem.damping).max()
     return Row(
-        r, float(max(orders)), float(np.linalg.norm(problem.damping, 2)), float(modes.squares.max()),
-        size if size > 0.0 else 1.0, np.array(orders, dtype=float), np.ascontiguousarray(parts),
-        (chi / modes.squares).sum(axis=1), chi.sum(axis=1),
+        r, float(max(orders)), float(damping), float(modes.squares.max()),
+        size if size > 0.0 else 1.0, all(n % 2 == 1 for n in orders), np.array(orders, dtype=float),
+        np.ascontiguousarray(parts), (chi / modes.squares).sum(axis=1), chi.sum(axis=1),
     )  # fmt: skip
 
 
-def grid_of(system: BankSystem, modes: Modal, beta: np.ndarray, start: Start, cycles: int) -> Grid:
-    """The cells of one frequency ratio."""
+def modal_offset(system: BankSystem, modes: Modal) -> np.ndarray | None:
+    """Displacements of the modes under the constant loads; None without any."""
+    return None if system.offset is None else np.linalg.solve(modes.phi, system.offset)
+
+
+def grid_of(
+    system: BankSystem, modes: Modal, beta: np.ndarray, start: Start, cycles: int, places: bool = True
+) -> Grid:
+    """The cells of one frequency ratio; arguments as of `solve.sweep_banks`."""
     limits = [one.limits(beta) for one in system.contacts]
     state = np.stack([np.linalg.solve(modes.phi, one) for one in (start.x, start.v)])
-    return Grid(np.ascontiguousarray(np.concatenate(limits, axis=1)), state, start.tau, cycles)
+    return Grid(
+        np.asarray(beta, dtype=float), np.ascontiguousarray(np.concatenate(limits, axis=1)), state, start.tau,
+        cycles, places,
+    )  # fmt: skip
 
 
 def allocate(problem: Problem, many: int) -> Cells:

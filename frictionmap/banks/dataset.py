@@ -8,7 +8,7 @@ import xarray as xr
 from .. import checks
 from ..datasets.variables import coordinate, label_variable
 from ..general.dataset import chosen_outputs, contact_coordinates, refuse_static
-from ..general.outputs import is_of_masses
+from ..general.outputs import depends_on_places, is_of_masses
 from ..jobs import Progress, Watch
 from ..model.settings import Solver
 from ..model.system import System
@@ -40,24 +40,27 @@ def solve_cells(
     system: System, axes: Mapping[str, np.ndarray], names: tuple[str, ...], solver: Solver,
     threads: int | None, progress: Progress | None, watch: Watch | None,
 ) -> dict[str, np.ndarray]:  # fmt: skip
-    """Outputs over the axes mu, r and beta; of contacts and masses with a last dimension."""
+    """Outputs over mu, r and beta (n_beta,) or (n_r, n_beta); of contacts and masses with a last axis."""
     refuse_static(system.contact_system, axes["mu"])
     r, beta = axes["r"], axes["beta"]
     check_ratios(system, r)
     masses, count = any(is_of_masses(name) for name in names), checks.threads(threads)
+    places = any(depends_on_places(name, system.contact_system) for name in names)
 
-    def solve(at: np.ndarray, progress: Progress | None) -> dict[str, np.ndarray]:
+    def solve(rows: slice, progress: Progress | None) -> dict[str, np.ndarray]:
+        at = r[rows]
         given = bank_system(system, float(at[0]))
-        ratios = Ratios(at, no_slip_limits(system, at), starts_of(system, at, solver.start))
-        return sweep_banks(given, ratios, beta, names, masses, solver.cycles, count, progress, watch)
+        own = np.broadcast_to(beta, (r.size, beta.shape[-1]))[rows]
+        ratios = Ratios(at, own, no_slip_limits(system, at), starts_of(system, at, solver.start))
+        return sweep_banks(given, ratios, names, masses, solver.cycles, count, progress, watch, places)
 
     parts = []
     for k in range(r.size if changes_with_r(system) else 0):
-        parts.append(solve(r[k : k + 1], None))
+        parts.append(solve(slice(k, k + 1), None))
         if progress is not None:
             progress(k + 1, r.size)
     found = {name: np.concatenate([part[name] for part in parts]) for name in names} if parts else solve(
-        r, progress
+        slice(None), progress
     )  # fmt: skip
     return {name: values[np.newaxis] for name, values in found.items()}
 

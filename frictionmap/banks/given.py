@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..general.held import least_static_friction, linear_parts, orders_of
-from ..general.problem import modal_system
+from ..general.held import least_static_friction, linear_parts, orders_of, stick_scales
+from ..general.problem import modal_system, static_offset
 from ..general.starts import states_at
 from ..model.general import DISPLACEMENT, MergedContact
 from ..model.system import System
@@ -64,11 +64,10 @@ def _bank(group: MergedContact, key: str) -> Bank:
 def bank_system(system: System, r: float) -> BankSystem:
     """The structure, contacts and loads of a system at one frequency ratio > 0."""
     general = system.contact_system
-    for name, there in (("springs", bool(general.springs)), ("load_offset", bool(general.offset.any()))):
-        if there:
-            raise InputError(
-                "cannot use", name, "with a bank as one contact: this is not offered there; omit it"
-            )
+    if general.springs:
+        raise InputError(
+            "cannot use", "springs", "with a bank as one contact: this is not offered there; omit it"
+        )
     if system.base_control != DISPLACEMENT:
         system = system.at_frequency(r)
         general = system.contact_system
@@ -76,26 +75,30 @@ def bank_system(system: System, r: float) -> BankSystem:
     contacts = tuple(_bank(group, f"contacts[{k}]") for k, group in enumerate(general.groups, 1))
     loads = {n: linear_parts(system, modes.stiffness, n, np.array([r]))[1][0] for n in orders_of(general)}
     moved = dict(general.base) if any(one.moved for one in contacts) else {}
-    return BankSystem(modes.mass, modes.damping, modes.stiffness, contacts, loads, moved)
+    offset = static_offset(system)[1] if general.offset.any() else None
+    return BankSystem(modes.mass, modes.damping, modes.stiffness, contacts, loads, moved, offset)
 
 
-def no_slip_limits(system: System, r: np.ndarray) -> np.ndarray:
-    """beta from which no element of any contact slips, (n_r,).
+def needed_friction(system: System, r: np.ndarray) -> np.ndarray:
+    """Friction of each contact, of all its elements, with which none of them slips, (n_r, N).
 
-    All springs of the elements are stretched alike, by half the range of the force over their stiffness.
+    All springs of the elements are stretched alike, by half the range of the force over their stiffness.  The
+    one that slips first has the least friction over its stiffness.
     """
-    given, limits = bank_system(system, 1.0), []
+    given = bank_system(system, 1.0)
     if system.base_control == DISPLACEMENT:
         needed = least_static_friction(system, r)
     else:
         rows = [least_static_friction(system.at_frequency(float(one)), np.array([one])) for one in r]
         needed = np.concatenate(rows)
-    for j, one in enumerate(given.contacts):
-        half = needed[:, j] / one.stiffness.sum()
-        per_beta, own = one.reaches
-        with np.errstate(divide="ignore", invalid="ignore"):
-            limits.append(np.where(half <= own, 0.0, (half - own) / per_beta))
-    return np.max(limits, axis=0)
+    with np.errstate(divide="ignore"):  # an element without friction always slips
+        return needed * np.array([one.surplus for one in given.contacts])
+
+
+def no_slip_limits(system: System, r: np.ndarray) -> np.ndarray:
+    """beta from which no element of any contact slips, (n_r,)."""
+    found = stick_scales(system.contact_system, needed_friction(system, r), np.ones(1))
+    return np.asarray(found[0].max(axis=1))
 
 
 def starts_of(system: System, r: np.ndarray, start: str) -> list[Start]:

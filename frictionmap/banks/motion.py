@@ -19,12 +19,14 @@ class Steps(NamedTuple):
     sense: np.ndarray  # (K, N)
 
 
-def steps_of(problem: Problem, motion: Motion) -> Steps:
-    """The steps that a record keeps."""
+def steps_of(problem: Problem, motion: Motion, offset: np.ndarray | None) -> Steps:
+    """The steps that a record keeps, about displacements `offset` of the modes."""
     record, contacts = motion.record, problem.moved.size
     count = int(record.count[0])
     tau, length, end = record.times[:count].T
     patterns = record.patterns[:count]
+    if offset is not None:
+        record.steps[:count, 0, : offset.size] += offset
     return Steps(
         tau - SECTION, length, end, record.steps[:count], patterns[:, :contacts], patterns[:, contacts:]
     )

@@ -13,7 +13,7 @@ from ..jobs import Job, Progress, Watch, run_counted
 from ..phases.arrays import Modal, modal
 from ..phases.quantities import TABLE, Solved
 from ..phases.solve import observed_rows
-from .arrays import allocate, grid_of, problem_of, row_of
+from .arrays import allocate, grid_of, modal_offset, problem_of, row_of
 from .motion import Steps, steps_of
 from .system import BankSystem, Start
 
@@ -30,24 +30,26 @@ class Ratios(NamedTuple):
     """Frequency ratios > 0, and what belongs to each."""
 
     r: np.ndarray  # (n_r,)
+    beta: np.ndarray  # (n_r, n_beta), increasing in every row
     limits: np.ndarray  # (n_r,) beta from which no element slips
     starts: Sequence[Start]
 
 
 def sweep_banks(
-    system: BankSystem, ratios: Ratios, beta: np.ndarray, outputs: Sequence[str], masses: bool, cycles: int,
-    threads: int, progress: Progress | None, watch: Watch | None,
+    system: BankSystem, ratios: Ratios, outputs: Sequence[str], masses: bool, cycles: int, threads: int,
+    progress: Progress | None, watch: Watch | None, places: bool = True,
 ) -> dict[str, np.ndarray]:  # fmt: skip
     """Steady motions over r and beta.
 
     Parameters
     ----------
     system : BankSystem
-    ratios, beta : axes
+    ratios : Ratios
     outputs : names of `phases.quantities.TABLE`
     masses : whether they need displacements of the masses
     cycles : periods of the load that a motion is followed at most
     threads, progress, watch : as in `sweep`
+    places : whether outputs are wanted that depend on the places of elements that never slip
 
     Returns
     -------
@@ -59,20 +61,30 @@ def sweep_banks(
     cancel = np.zeros(1, np.uint8)
     jobs: list[Job] = []
     found: list[Cells] = []
-    for one, start in zip(ratios.r, ratios.starts, strict=True):
+    for one, beta, start in zip(ratios.r, ratios.beta, ratios.starts, strict=True):
         found.append(allocate(problem, beta.size))
         row = row_of(system, problem, modes, float(one))
-        grid = grid_of(system, modes, beta, start, cycles)
+        grid = grid_of(system, modes, beta, start, cycles, places)
         jobs.append((fill_cells, (problem, row, grid, 0, found[-1], cancel)))
     try:
         run_counted(jobs, threads, progress, watch)
     except BaseException:
         cancel[0] = 1
         raise
-    for cells, limit in zip(found, ratios.limits, strict=True):
+    for cells, beta, limit in zip(found, ratios.beta, ratios.limits, strict=True):
         _put_still(cells, beta, float(limit))
+        _put_offset(problem, cells, modal_offset(system, modes))
     solved = [solved_of(problem, one) for one in found]
     return {name: np.stack([TABLE[name](one) for one in solved]) for name in outputs}
+
+
+def _put_offset(problem: Problem, cells: Cells, offset: np.ndarray | None) -> None:
+    """Add displacements of the modes under constant loads to the extremes."""
+    if offset is None:
+        return
+    shift = np.concatenate((problem.observed, problem.chi)) @ offset
+    for ends in (cells.low, cells.high):
+        ends[:, : shift.size] += shift
 
 
 def _put_still(cells: Cells, beta: np.ndarray, limit: float) -> None:
@@ -102,12 +114,14 @@ def find_motion(system: BankSystem, r: float, beta: float, limit: float, start: 
     grid = grid_of(system, modes, np.array([beta]), start, cycles)
     cells, motion = _one(problem, row, grid, 0)
     _put_still(cells, np.array([beta]), limit)
+    offset = modal_offset(system, modes)
+    _put_offset(problem, cells, offset)
     numbers = {name: values(solved_of(problem, cells))[0] for name, values in TABLE.items()}
     averaged = int(np.nan_to_num(cells.numbers[0, AVERAGED]))
     if averaged <= 0:
         return Found(problem, modes, numbers, 0, 0, None)
     _, motion = _one(problem, row, grid, int(motion.record.count[0]))
-    return Found(problem, modes, numbers, averaged, averaged, steps_of(problem, motion))
+    return Found(problem, modes, numbers, averaged, averaged, steps_of(problem, motion, offset))
 
 
 def _one(problem: Problem, row: Any, grid: Grid, steps: int) -> tuple[Cells, Any]:

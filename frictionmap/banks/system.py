@@ -29,10 +29,11 @@ class Bank:
         return np.asarray(friction / self.stiffness)
 
     @property
-    def reaches(self) -> tuple[float, float]:
-        """Least elongation at which an element slips: per beta, and beside it; one of them is 0."""
-        per_beta, own = self.ratio / self.stiffness, self.force / self.stiffness
-        return float(per_beta.min()), float(own.min())
+    def surplus(self) -> float:
+        """Friction of all elements over the force of all springs at which the first element slips."""
+        friction = self.ratio + self.force
+        least = (friction / self.stiffness).min()
+        return float(friction.sum() / self.stiffness.sum() / least)
 
 
 def ordered(
@@ -59,6 +60,8 @@ class BankSystem:
     contacts : Bank
     loads : phasors (n,) by order
     base : phasors of the base motion by order, for walls that move with it
+    offset : (n,) displacements under the constant loads, about which the motion is: no spring of an element
+        is stretched by them
     """
 
     mass: np.ndarray
@@ -67,6 +70,7 @@ class BankSystem:
     contacts: tuple[Bank, ...]
     loads: Mapping[int, np.ndarray] = field(default_factory=dict)
     base: Mapping[int, complex] = field(default_factory=dict)
+    offset: np.ndarray | None = None
 
     @property
     def n(self) -> int:

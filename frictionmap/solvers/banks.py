@@ -49,13 +49,20 @@ class BanksEngine(FollowingEngine):
         raise AssertionError  # every system of this engine has a bank
 
     def needed_friction(self, r: np.ndarray) -> np.ndarray:
-        self._refuse("answer design questions")
+        from ..banks.given import needed_friction
+
+        return needed_friction(self.system, r)
 
     def no_stop_limit(self, r: np.ndarray, mu: float, watch: Watch | None) -> np.ndarray:
-        self._refuse("answer design questions")
+        self._refuse("find friction without stops")
 
     def limits(self, r: np.ndarray, mu: np.ndarray, watch: Watch | None = None) -> Limits:
-        self._refuse("compute this")
+        from ..general.held import stick_scales
+
+        self.check_static(mu)
+        each = stick_scales(self.system.contact_system, self.needed_friction(r), mu)
+        none = np.full((mu.size, r.size, 1), np.nan)
+        return Limits(none[..., 0], each.max(axis=2), each, none, none)
 
     def boundaries(self, r: np.ndarray, mu: np.ndarray) -> "xr.Dataset":
         from ..banks.dataset import bank_boundaries
@@ -74,7 +81,11 @@ class BanksEngine(FollowingEngine):
         self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
         progress: Progress | None, watch: Watch | None,
     ) -> tuple[dict[str, np.ndarray], Limits]:  # fmt: skip
-        self._refuse("answer design questions")
+        from ..banks.dataset import solve_cells
+
+        wanted = tuple(dict.fromkeys(("regime", "contact_regime", *names)))
+        limits = self.limits(axes["r"], axes["mu"], watch)
+        return solve_cells(self.system, axes, wanted, solver, threads, progress, watch), limits
 
     def curves(
         self, axes: Mapping[str, np.ndarray], solver: Solver, asked: CurveSettings, threads: int | None,
@@ -91,18 +102,24 @@ class BanksEngine(FollowingEngine):
 
     @property
     def sizes(self) -> tuple[str, ...]:
-        self._refuse("answer design questions")
+        from ..banks.responses import QUANTITIES
+
+        return QUANTITIES
 
     def sizes_on_grid(
         self, wanted: Wanted, axes: dict[str, np.ndarray], solver: Solver, threads: int, watch: Watch | None
     ) -> Sizes:
-        self._refuse("answer design questions")
+        from ..banks.responses import sizes_on_grid
+
+        return sizes_on_grid(self.system, wanted, axes, solver, threads, watch)
 
     def sizes_at(
         self, wanted: Wanted, r: np.ndarray, beta: np.ndarray, mu: float, solver: Solver, threads: int,
         watch: Watch | None,
     ) -> Sizes:  # fmt: skip
-        self._refuse("answer design questions")
+        from ..banks.responses import sizes_at
+
+        return sizes_at(self.system, wanted, r, beta, mu, solver, threads, watch)
 
     def states(self, r: np.ndarray, beta: np.ndarray, mu: float) -> "list[States]":
         self._refuse("compute first harmonics at points")

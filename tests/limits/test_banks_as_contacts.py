@@ -28,7 +28,7 @@ def drawn(seed, n):
     return rng.uniform(0.1, 1.0, n) * 2.0 / n, rng.uniform(0.05, 2.0, n)
 
 
-def both(contacts, r, beta, **system):
+def both(contacts, r, beta, outputs=OUTPUTS, **system):
     """Maps of a system with banks as one contact, and with their elements as contacts."""
     return [
         fm.sweep(
@@ -40,7 +40,7 @@ def both(contacts, r, beta, **system):
             ),
             r,
             beta,
-            outputs=OUTPUTS,
+            outputs=(*outputs, "status", "cycles"),
         )
         for kind in ("contact", "elements")
     ]
@@ -74,6 +74,7 @@ CASES = {
         [bank(K, U, kind="joined-base-wall")],
         {"damping_ratios": 0.03, "excitation": "base"},
     ),
+    "constant loads": ([bank(K, U, masses=2)], CHAIN | {"load_offset": [0.3, -0.2]}),
     "a base of constant acceleration": (
         [bank(K, U)],
         {"damping_ratios": 0.03, "excitation": "base", "base_control": "acceleration"},
@@ -96,6 +97,55 @@ def test_a_bank_is_its_elements(name):
         # the other engine knows the time of a slip to 1e-8
         close = 1e-7 if output == "elastic_fraction" else 1e-11 * size
         assert values == pytest.approx(of_banks(contacts, each, output), abs=close), output
+
+
+@pytest.mark.parametrize("load", [{}, {"load_harmonics": MANY}], ids=["odd orders", "all orders"])
+def test_cells_that_begin_at_their_neighbours_are_the_elements(load):
+    """Ranges and works along rows of friction, from where all elements slip to where most of them rest."""
+    contacts, names = [bank(K, U)], ("peak_to_peak", "contact_peak_to_peak", "work_friction", *COUNTS)
+    beta = np.linspace(0.05, 2.5, 15)
+    one, each = both(contacts, [0.7, 1.2], beta, outputs=names, damping_ratios=0.03, **load)
+    assert (one.status == 0).all()
+    assert one.cycles.mean() < 0.5 * each.cycles.mean()
+    size = each.peak_to_peak.max().item()
+    for name in names:
+        close = 1e-7 if name == "elastic_fraction" else 1e-11 * size
+        values, expected = one[name].values, each[name].values
+        if name != "peak_to_peak":
+            values, expected = values[..., np.newaxis], of_banks(contacts, each, name)
+        assert values == pytest.approx(expected, abs=close), name
+
+
+def test_rows_of_banks_have_the_same_bits_for_any_number_of_threads():
+    system = fm.System(contacts=[bank(K, U, bank="contact")], damping_ratios=0.03)
+    r, beta = np.linspace(0.6, 1.4, 5), np.linspace(0.1, 2.0, 8)
+    one, two = (fm.sweep(system, r, beta, outputs=OUTPUTS, threads=threads) for threads in (1, 2))
+    for name in OUTPUTS:
+        np.testing.assert_array_equal(one[name].values, two[name].values)
+
+
+BAND = [1.0, 1.5]
+ASKED = {
+    "least-peak": (
+        lambda system: fm.design.least_peak(system, [1.2, 1.3], beta=[0.65, 0.75]),
+        ("beta", "peak"),
+    ),
+    "at-most": (lambda system: fm.design.at_most(system, BAND, 4.0), ("interval_begin", "interval_end")),
+    "stuck": (lambda system: fm.design.stuck(system, BAND), ("beta", "at_r")),
+    "margin": (lambda system: fm.design.margin(system, 0.8, 3.0), ("beta_stick", "margin_beta_stick")),
+}
+
+
+@pytest.mark.parametrize("question", ASKED)
+def test_designs_of_a_bank_are_those_of_its_elements(question):
+    ask, names = ASKED[question]
+    given = fm.Contact(stiffness=[0.4, 0.6], ratio=[0.3, 0.7])
+    one, each = (
+        ask(fm.System(contacts=[replace(given, bank=kind)], damping_ratios=0.2))
+        for kind in ("contact", "elements")
+    )
+    for name in names:
+        np.testing.assert_allclose(one[name].values, each[name].values, rtol=1e-7)
 
 
 def test_a_bank_of_more_elements_than_contacts_are_offered():
@@ -183,7 +233,6 @@ REFUSED = [
     ([HALVES, fm.Contact("between-masses", (1, 2))], {}, "cannot use contacts[2] beside a bank as one"),
     ([replace(HALVES, wall_velocity=0.1)], {}, "cannot use contacts[1].wall_velocity with a bank"),
     ([replace(HALVES, normal_load={2: 0.5})], {}, "cannot use contacts[1].normal_load with a bank"),
-    ([HALVES], {"load_offset": [0.1, 0.0]}, "cannot use load_offset with a bank"),
     ([HALVES], {"springs": [{"gap": 0.1, "stiffness": 1.0}]}, "cannot use springs with a bank"),
 ]  # fmt: skip
 
@@ -198,12 +247,10 @@ def test_what_is_refused_with_a_bank(contacts, more, message):
 def test_other_questions_about_a_bank_are_refused():
     system = fm.System(contacts=[HALVES], **CHAIN)
     record = fm.Record(np.array([0.0, 1.0, 0.0]), dt=0.5)
-    for ask in (
-        lambda: fm.design.least_peak(system, [0.5, 0.9]),
-        lambda: fm.history(system, record, 0.1),
-    ):
-        with pytest.raises(fm.InputError, match=r'a bank of 2 elements as one contact.*bank = "elements"'):
-            ask()
+    with pytest.raises(fm.InputError, match=r'a bank of 2 elements as one contact.*bank = "elements"'):
+        fm.history(system, record, 0.1)
+    with pytest.raises(fm.InputError, match="cannot find friction without stops with contact_stiffness"):
+        fm.design.no_stop(system, [0.5, 0.9])
 
 
 def test_a_bank_in_a_configuration(tmp_path):

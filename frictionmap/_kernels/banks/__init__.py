@@ -14,6 +14,7 @@ record   extremes, works and distances of a steady motion, and its steps
 follow   the motion from one time to another
 orbit    Newton's method for the state that returns, and what proves that a motion goes there
 steady   the steady motion of one cell
+trail    the steady motions of the last cells, which the next one begins from
 fill     cells of a map, and the steps of one motion
 =======  ====================================================================================
 """

@@ -11,18 +11,21 @@ from ..compiler.packed import packed
 from ..phases.fill import AVERAGED, CYCLES, MULTIPLIER, PERIOD, STATUS
 from ..phases.problem import COUNT_ROWS, STUCK
 from .level import slipping
-from .orbit import make_memory
+from .orbit import keep_orbit, make_memory
 from .problem import Cell, make_motion
-from .steady import find_steady
+from .steady import Found, all_slip, find_ahead, find_steady
+from .trail import begin_ahead, make_trail, remember
 
 
 class Grid(NamedTuple):
     """Cells of one r."""
 
+    beta: np.ndarray  # (B,) increasing
     limit: np.ndarray  # (B, E) u
     start: np.ndarray  # (2, m) modes and their velocities q' at the phase `begin`
     begin: float
     cycles: int
+    places: bool  # whether displacements are wanted that depend on the places of elements that never slip
 
 
 @kernel
@@ -59,23 +62,57 @@ def put_friction(problem, limit, cell):
             cell.slid[i + j + 1] = total
 
 
+@kernel
+def _solve_cell(problem, row, cell, motion, memory, grid, at, trail):
+    """Find the steady motion of a cell: where the last cells point, or from its start.
+
+    Parameters
+    ----------
+    problem, row, cell : Problem, Row, Cell with the friction of the cell
+    motion, memory : Motion, Memory
+    grid, at : Grid, number of the cell
+    trail : Trail
+
+    Returns
+    -------
+    Found
+    """
+    memory.known[0] = 0
+    if trail.count[0] > 0:
+        begin_ahead(problem, row, cell, motion, grid.beta[at], trail)
+        passes = find_ahead(problem, row, cell, motion, memory)
+        if passes > 0:
+            remember(motion.now, grid.beta[at], trail)
+            if not grid.places or all_slip(problem, motion):
+                return Found(regimes.RESOLVED, passes, memory.radius[0])
+            keep_orbit(motion, memory)
+    ahead = memory.known[0] != 0
+    found = find_steady(problem, row, cell, motion, memory, grid)
+    if found.status != regimes.RESOLVED:
+        trail.count[0] = 0
+    elif not ahead:
+        remember(motion.now, grid.beta[at], trail)
+    return found
+
+
 @entry
-def _fill(problem, row, grid, cell, motion, memory, out, cancel):
+def _fill(problem, row, grid, cell, motion, memory, trail, out, cancel):
     """Fill the cells of one r.
 
     Parameters
     ----------
     problem, row, grid, out : see `fill_cells`
-    cell, motion, memory : Cell, Motion, Memory, overwritten
+    cell, motion, memory, trail : Cell, Motion, Memory, Trail, overwritten
     cancel : (1,) not 0 where the rest is not wanted
     """
     problem, row, grid, out = packed(problem), packed(row), packed(grid), packed(out)
-    cell, motion, memory = packed(cell), packed(motion), packed(memory)
+    cell, motion, memory, trail = packed(cell), packed(motion), packed(memory), packed(trail)
+    trail.count[0] = 0
     for at in range(grid.limit.shape[0]):
         if cancel[0] != 0:
             break
         put_friction(problem, grid.limit[at], cell)
-        found = find_steady(problem, row, cell, motion, memory, grid)
+        found = _solve_cell(problem, row, cell, motion, memory, grid, at, trail)
         _put_cell(problem, motion, found, out, at)
 
 
@@ -90,5 +127,5 @@ def fill_cells(problem, row, grid, steps, out, cancel):
     """
     motion = make_motion(problem, row.orders.size, COUNT_ROWS, steps)
     cell = Cell(np.zeros(problem.spring.size), np.zeros(problem.left.size))
-    _fill(problem, row, grid, cell, motion, make_memory(problem), out, cancel)
+    _fill(problem, row, grid, cell, motion, make_memory(problem), make_trail(problem), out, cancel)
     return motion

@@ -4,7 +4,7 @@ import math
 
 from ..compiler import kernel
 from ..general.problem import SECTION
-from ..phases.problem import MOVED, REVERSALS, SLIPS, STUCK
+from ..phases.problem import LAST, MOVED, REVERSALS, SLIPS, STUCK
 from .level import (
     NOTHING,
     TURN,
@@ -12,7 +12,7 @@ from .level import (
     displacement,
     mark_level,
     pass_thresholds,
-    put_pull,
+    put_pulls,
     turn_back,
 )
 from .record import record_step
@@ -49,7 +49,7 @@ def begin_state(problem, row, cell, tau, motion):
         z, w = displacement(problem, motion, j), contact_velocity(problem, motion, j)
         motion.range[0, j] = motion.range[1, j] = z
         motion.most[0, j] = motion.most[1, j] = 0
-        put_pull(problem, cell, motion, j)
+        put_pulls(problem, cell, motion, j, problem.first[j + 1] - problem.first[j])
         if w * motion.now.sense[j] < 0.0:
             turn_back(problem, cell, motion, j, z)
         if w != 0.0:
@@ -109,13 +109,39 @@ def follow(problem, row, cell, begin, end, motion):
 
 
 @kernel
-def follow_period(problem, row, cell, motion):
-    """Follow the motion for one period of the load, from the section on, with its counts; see `follow`."""
+def _mirror(problem, motion):
+    """Turn the sign of a motion, and put the sliders that rest in its middle."""
+    now, tangent = motion.now, motion.tangent
+    for i in range(problem.squares.size):
+        now.q[i], now.p[i] = -now.q[i], -now.p[i]
+        for c in range(tangent.count[0]):
+            tangent.q[i, c], tangent.p[i, c] = -tangent.q[i, c], -tangent.p[i, c]
+    for i in range(problem.spring.size):
+        rests = now.turn[i] == 0
+        now.place[i] = 0.0 if rests else -now.place[i]
+        now.side[i] = 0.0 if rests else -now.side[i]
+        for c in range(tangent.count[0]):
+            tangent.slider[i, c] = -tangent.slider[i, c]
+    for j in range(problem.moved.size):
+        now.sense[j] = -now.sense[j]
+        motion.counts[LAST, j] = -motion.counts[LAST, j]
+
+
+@kernel
+def follow_period(problem, row, cell, motion, half):
+    """Follow the motion for one period of the load, from the section on, with its counts; see `follow`.
+
+    With `half` for half a period, which ends at the mirror image: under odd orders, of a steady motion whose
+    sliders at rest are in its middle, that is the state at the beginning.
+    """
     _forget_turns(motion)
     begin_state(problem, row, cell, SECTION, motion)
-    code = follow(problem, row, cell, SECTION, SECTION + 2.0 * math.pi, motion)
+    way = math.pi if half else 2.0 * math.pi
+    code = follow(problem, row, cell, SECTION, SECTION + way, motion)
     for j in range(problem.moved.size):
         z = displacement(problem, motion, j)
         motion.range[0, j] = min(motion.range[0, j], z)
         motion.range[1, j] = max(motion.range[1, j], z)
+    if half:
+        _mirror(problem, motion)
     return code

@@ -39,18 +39,15 @@ def has_threshold(problem, now, j):
 
 
 @kernel
-def put_pull(problem, cell, motion, j):
-    """Sum k y of the elements that are not at their limits."""
+def put_pulls(problem, cell, motion, j, count):
+    """Sum k y from each of the first `count` elements of contact j on; the others have not moved."""
     now, tangent = motion.now, motion.tangent
-    total = 0.0
-    for i in range(problem.first[j] + now.level[j], problem.first[j + 1]):
-        total += problem.spring[i] * (now.place[i] - now.side[i] * cell.limit[i])
-    motion.pull[j] = total
-    for c in range(tangent.count[0]):
-        slope = 0.0
-        for i in range(problem.first[j] + now.level[j], problem.first[j + 1]):
-            slope += problem.spring[i] * tangent.slider[i, c]
-        tangent.pull[j, c] = slope
+    for i in range(problem.first[j] + count - 1, problem.first[j] - 1, -1):
+        spring = problem.spring[i]
+        place = now.place[i] - now.side[i] * cell.limit[i]
+        motion.pull[i + j] = motion.pull[i + j + 1] + spring * place
+        for c in range(tangent.count[0]):
+            tangent.pull[i + j, c] = tangent.pull[i + j + 1, c] + spring * tangent.slider[i, c]
 
 
 @kernel
@@ -102,7 +99,6 @@ def pass_thresholds(problem, cell, motion, j, z):
     if now.level[j] != before:
         if before == 0:
             _count_slip(motion, j)
-        put_pull(problem, cell, motion, j)
         mark_level(motion, j)
 
 
@@ -115,22 +111,31 @@ def begin_slip(problem, cell, motion, j, z):
 
 
 @kernel
+def slope_of(problem, tangent, j, c):
+    """Derivative of the displacement in contact j by coordinate c."""
+    total = 0.0
+    for k in range(problem.squares.size):
+        total += problem.chi[j, k] * tangent.q[k, c]
+    return total
+
+
+@kernel
 def turn_back(problem, cell, motion, j, z):
     """Reverse a contact: its elements at their limits hold, all in one instant."""
-    now, tangent = motion.now, motion.tangent
-    if now.level[j] > 0:
+    now, tangent, level = motion.now, motion.tangent, motion.now.level[j]
+    first = problem.first[j]
+    if level > 0:
         motion.turns[0] += 1
-        for i in range(problem.first[j], problem.first[j] + now.level[j]):
+        for c in range(tangent.count[0]):
+            tangent.slider[first, c] = slope_of(problem, tangent, j, c)
+        for i in range(first, first + level):
             now.place[i], now.side[i], now.turn[i] = z, now.sense[j], motion.turns[0]
             for c in range(tangent.count[0]):
-                slope = 0.0
-                for k in range(problem.squares.size):
-                    slope += problem.chi[j, k] * tangent.q[k, c]
-                tangent.slider[i, c] = slope
+                tangent.slider[i, c] = tangent.slider[first, c]
+        put_pulls(problem, cell, motion, j, level)
     now.level[j] = 0
     now.sense[j] = -now.sense[j]
     now.lead[j] = 1
     motion.range[0, j] = min(motion.range[0, j], z)
     motion.range[1, j] = max(motion.range[1, j], z)
-    put_pull(problem, cell, motion, j)
     pass_thresholds(problem, cell, motion, j, z)

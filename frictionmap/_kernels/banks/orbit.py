@@ -14,8 +14,9 @@ import numpy as np
 from ..compiler import entry, kernel
 from ..general.problem import SECTION
 from ..spectral_radius import spectral_radius
+from ..structure.newton import solve_linear
 from .follow import FOLLOWED, follow_period
-from .level import displacement, slider, slipping
+from .level import displacement, slider, slipping, slope_of
 from .problem import MOST_MEMORIES, State, make_state
 from .step import put_waves
 from .tangent import begin_tangent, memories
@@ -33,9 +34,6 @@ _NO_MOTION = 1e-4
 
 #: Distance from the orbit, over the size of the motion, at which the motion is there.
 _ARRIVED = 1e-11
-
-#: Pivots below this share of the largest one belong to directions in which all states return.
-_FREE = 1e-10
 
 
 class Memory(NamedTuple):
@@ -108,11 +106,11 @@ def distance(state, other, sliders):
 
 
 @kernel
-def go_round(problem, row, cell, motion, memory):
-    """Follow a period from the state in `motion`, kept as `start`; its code, and `off`."""
+def go_round(problem, row, cell, motion, memory, half):
+    """Follow a period, or half of one, from the state in `motion`, kept as `start`; its code, and `off`."""
     copy_state(motion.now, memory.start)
     put_sliders(problem, row, cell, motion, memory.sliders[0])
-    code = follow_period(problem, row, cell, motion)
+    code = follow_period(problem, row, cell, motion, half)
     put_sliders(problem, row, cell, motion, memory.sliders[1])
     memory.off[0] = distance(memory.start, motion.now, memory.sliders)
     return code
@@ -138,40 +136,11 @@ def _put_equations(problem, motion, memory):
             for c in range(size):
                 slope = tangent.slider[i, c]
                 if i < problem.first[j] + now.level[j]:  # its slider moves with the contact
-                    slope = 0.0
-                    for k in range(modes):
-                        slope += problem.chi[j, k] * tangent.q[k, c]
+                    slope = slope_of(problem, tangent, j, c)
                 memory.square[at, c] = slope
     for a in range(size):
         for c in range(size):
             memory.matrix[a, c] = (1.0 if a == c else 0.0) - memory.square[a, c]
-
-
-@kernel
-def _solve(matrix, right, size):
-    """Solve linear equations by elimination, the solution in `right`; False where they are singular."""
-    first = 0.0
-    for done in range(size):
-        best = done
-        for a in range(done + 1, size):
-            if abs(matrix[a, done]) > abs(matrix[best, done]):
-                best = a
-        first = max(first, abs(matrix[best, done]))
-        if abs(matrix[best, done]) <= _FREE * first:
-            return False
-        for c in range(size):
-            matrix[done, c], matrix[best, c] = matrix[best, c], matrix[done, c]
-        right[done], right[best] = right[best], right[done]
-        for a in range(done + 1, size):
-            share = matrix[a, done] / matrix[done, done]
-            for c in range(done, size):
-                matrix[a, c] -= share * matrix[done, c]
-            right[a] -= share * right[done]
-    for a in range(size - 1, -1, -1):
-        for c in range(a + 1, size):
-            right[a] -= matrix[a, c] * right[c]
-        right[a] /= matrix[a, a]
-    return True
 
 
 @kernel
@@ -204,38 +173,54 @@ def _take_step(problem, motion, memory):
 
 
 @kernel
-def find_orbit(problem, row, cell, motion, memory):
-    """Find the state that returns after a period, from that of `motion` after a period; whether it was.
+def find_orbit(problem, row, cell, motion, memory, half, hasty):
+    """Find the state that returns after a period, from that of `motion` after a period.
 
-    If so, `start` and `motion` have it, and the counts, levels and ranges are those of the orbit.
+    Parameters
+    ----------
+    problem, row, cell : Problem, Row, Cell
+    motion, memory : Motion, Memory
+    half : whether half a period is followed, see `follow_period`
+    hasty : whether the state may be one that is expected to return, and has not been followed
+
+    Returns
+    -------
+    int
+        Returns followed; 0 if none was found.  `motion` has the state, and if not hasty nor half, the counts,
+        levels and ranges of the orbit.
     """
     last = np.inf
-    for _ in range(_MOST_STEPS):
+    for count in range(1, _MOST_STEPS + 1):
         if memories(problem, motion) < 0:
-            return False
+            return 0
         begin_tangent(problem, motion)
-        code = go_round(problem, row, cell, motion, memory)
+        code = go_round(problem, row, cell, motion, memory, half)
         size, off = state_size(row, memory.start), memory.off[0]
         if code != FOLLOWED or off > size or off > 100.0 * last:
-            return False
+            return 0
         _put_equations(problem, motion, memory)
         if off <= _CONVERGED * size or (off <= _ACCEPTED * size and off > 0.25 * last):
-            return True
-        last = off
-        if not _solve(memory.matrix, memory.right, motion.tangent.count[0]):
-            return False
+            return count
+        if not solve_linear(memory.matrix, memory.right, motion.tangent.count[0]):
+            return 0
         _take_step(problem, motion, memory)
-    return False
+        # the steps converge quadratically
+        if hasty and count > 1 and off * (off / last) ** 2 <= 0.1 * _CONVERGED * size:
+            return count
+        last = off
+    return 0
 
 
 @kernel
-def _multiplier(motion, memory):
-    """Largest modulus of the multipliers of the orbit found last."""
+def put_multiplier(motion, memory, half):
+    """Keep the largest modulus of the multipliers of the orbit found last, over half a period or all."""
     size = motion.tangent.count[0]
     for a in range(size):
         for b in range(size):
             memory.matrix[a, b] = memory.square[a, b]
-    return spectral_radius(memory.matrix, size, memory.square, 0.0)
+    radius = spectral_radius(memory.matrix, size, memory.square, 0.0)
+    memory.radius[0] = radius * radius if half else radius
+    motion.tangent.count[0] = 0
 
 
 @kernel
@@ -280,9 +265,7 @@ def keep_orbit(motion, memory):
     for j in range(memory.most.shape[1]):
         for which in range(2):
             memory.most[which, j], memory.range[which, j] = motion.most[which, j], motion.range[which, j]
-    memory.radius[0] = _multiplier(motion, memory)
     memory.known[0] = 1
-    motion.tangent.count[0] = 0
 
 
 @kernel
@@ -294,6 +277,60 @@ def _put_both(problem, row, cell, motion, memory):
         for j in range(problem.moved.size):
             motion.z[j, which] = displacement(problem, motion, j)
             motion.most[which, j], motion.range[which, j] = memory.most[which, j], memory.range[which, j]
+
+
+@kernel
+def _put_forces_at_rest(problem, motion, memory):
+    """Fill the equations of the displacements by the forces of sliders at rest that are not where they are in
+    the orbit: whether there are some, and whether others are at an edge; after `_put_both`.
+    """
+    chi, sliders, modes, moves, edges = problem.chi, memory.sliders, problem.squares.size, False, False
+    for a in range(modes):
+        memory.right[a] = 0.0
+        for b in range(modes):
+            memory.matrix[a, b] = problem.squares[a] if a == b else 0.0
+    for j in range(problem.moved.size):
+        at = problem.first[j] + slipping(motion, j)
+        pull, left = 0.0, problem.left[at + j]
+        for i in range(at, problem.first[j + 1]):
+            if _edge(motion, j, i - problem.first[j]) != 0:
+                edges = True
+            elif sliders[0, i] != sliders[1, i]:
+                moves = True
+                pull += problem.spring[i] * (sliders[0, i] - sliders[1, i])
+        for a in range(modes):
+            memory.right[a] += chi[j, a] * pull
+            for b in range(modes):
+                memory.matrix[a, b] += chi[j, a] * left * chi[j, b]
+    return moves, edges
+
+
+@kernel
+def move_orbit(problem, row, cell, motion, memory):
+    """Move the orbit that is kept to the sliders at rest of the state `last`: by a static displacement.
+
+    It is forgotten if sliders are at rest at an edge.
+    """
+    _put_both(problem, row, cell, motion, memory)
+    moves, edges = _put_forces_at_rest(problem, motion, memory)
+    if not moves:
+        return
+    orbit, modes = memory.orbit, problem.squares.size
+    if edges or not solve_linear(memory.matrix, memory.right, modes):
+        memory.known[0] = 0
+        return
+    for i in range(modes):
+        orbit.q[i] += memory.right[i]
+    for j in range(problem.moved.size):
+        way, at = 0.0, problem.first[j] + slipping(motion, j)
+        for i in range(modes):
+            way += problem.chi[j, i] * memory.right[i]
+        memory.range[0, j] += way
+        memory.range[1, j] += way
+        for i in range(problem.first[j], at):
+            orbit.place[i] += way
+        for i in range(at, problem.first[j + 1]):
+            orbit.place[i], orbit.side[i], orbit.turn[i] = memory.sliders[0, i], 0.0, 0
 
 
 @kernel

@@ -17,7 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry
-from ..general.problem import LONG, WIDTH
+from ..compiler.vectors import LANES
+from ..general.problem import LONG, WIDTH, padded
 
 #: Memories of turns at the section that are unknowns of Newton's method, at most.
 MOST_MEMORIES = 48
@@ -45,6 +46,7 @@ class Row(NamedTuple):
     damping: float  # norm of the damping
     square: float  # largest w^2
     size: float  # displacement that the load can be expected to cause
+    odd: bool  # whether all orders are odd, so that half a period mirrors a steady motion
     orders: np.ndarray  # (H,)
     phasors: np.ndarray  # (2, H, m + 1) cos and sin parts of the load on the modes, and of the base motion
     softness: np.ndarray  # (N,) sum of chi^2/w^2
@@ -77,7 +79,7 @@ class Tangent(NamedTuple):
     q: np.ndarray  # (m, C)
     p: np.ndarray  # (m, C)
     slider: np.ndarray  # (E, C) of y
-    pull: np.ndarray  # (N, C) of G
+    pull: np.ndarray  # (E + N, C) of G
     count: np.ndarray  # (1,) int: coordinates; 0 where derivatives are not carried
 
 
@@ -99,7 +101,7 @@ class Motion(NamedTuple):
     """A motion and its memory."""
 
     now: State
-    pull: np.ndarray  # (N,) G
+    pull: np.ndarray  # (E + N,) G_j, from first[j] + j on, of the levels that the contact may come to
     turns: np.ndarray  # (1,) int: turns so far in this period
     most: np.ndarray  # (2, N) int: highest level in this period with sense -1, and with 1
     range: np.ndarray  # (2, N) lowest and highest z at turns and at the section, in this period
@@ -108,8 +110,10 @@ class Motion(NamedTuple):
     moves: np.ndarray  # (LONG, m)
     loads: np.ndarray  # (LONG, m + 1)
     z: np.ndarray  # (N, WIDTH)
+    force: np.ndarray  # (N,) a term of the forces
     watch: np.ndarray  # (3, WIDTH)
-    column: np.ndarray  # (LONG, m)
+    column: np.ndarray  # (LONG, m, LANES) derivatives by some coordinates
+    push: np.ndarray  # (N, LANES) a term of the forces in them
     tangent: Tangent
     counts: np.ndarray  # (COUNT_ROWS, N)
     record: Record
@@ -130,11 +134,11 @@ def make_state(problem):
 def make_motion(problem, harmonics, rows, steps):
     """Allocate a motion, whose record keeps this many steps; `rows` counters per contact."""
     contacts, modes = problem.chi.shape
-    many, size = problem.spring.size, 2 * modes + MOST_MEMORIES
+    many, size = problem.spring.size, padded(2 * modes + MOST_MEMORIES)
     wide = problem.observed.shape[0] + contacts
     tangent = Tangent(
-        np.zeros((modes, size)), np.zeros((modes, size)), np.zeros((many, size)), np.zeros((contacts, size)),
-        np.zeros(1, np.int64),
+        np.zeros((modes, size)), np.zeros((modes, size)), np.zeros((many, size)),
+        np.zeros((many + contacts, size)), np.zeros(1, np.int64),
     )  # fmt: skip
     record = Record(
         np.zeros(1, np.int64), np.zeros(wide), np.zeros(wide), np.zeros(contacts), np.zeros(contacts),
@@ -142,8 +146,10 @@ def make_motion(problem, harmonics, rows, steps):
         np.zeros((steps, 2 * contacts), np.int64),
     )  # fmt: skip
     return Motion(
-        make_state(problem), np.zeros(contacts), np.zeros(1, np.int64), np.zeros((2, contacts), np.int64),
+        make_state(problem), np.zeros(many + contacts), np.zeros(1, np.int64),
+        np.zeros((2, contacts), np.int64),
         np.zeros((2, contacts)), np.zeros(modes), np.zeros((2, harmonics)), np.zeros((LONG, modes)),
-        np.zeros((LONG, modes + 1)), np.zeros((contacts, WIDTH)), np.zeros((3, WIDTH)),
-        np.zeros((LONG, modes)), tangent, np.zeros((rows, contacts)), record,
+        np.zeros((LONG, modes + 1)), np.zeros((contacts, WIDTH)), np.zeros(contacts), np.zeros((3, WIDTH)),
+        np.zeros((LONG, modes, LANES)), np.zeros((contacts, LANES)), tangent, np.zeros((rows, contacts)),
+        record,
     )  # fmt: skip

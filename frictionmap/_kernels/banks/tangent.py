@@ -6,9 +6,9 @@ they follow the place of the turn.
 """
 
 from ..compiler import kernel
+from ..compiler.vectors import LANES, filled, load, store
 from ..general.problem import INVERSE
 from .problem import MOST_MEMORIES
-from .step import end_term, put_term
 
 
 @kernel
@@ -37,8 +37,6 @@ def begin_tangent(problem, motion):
             tangent.p[i, c] = 1.0 if c == modes + i else 0.0
     at = 2 * modes - 1
     for j in range(problem.moved.size):
-        for c in range(size):
-            tangent.pull[j, c] = 0.0
         for i in range(problem.first[j], problem.first[j + 1]):
             for c in range(size):
                 tangent.slider[i, c] = 0.0
@@ -47,41 +45,55 @@ def begin_tangent(problem, motion):
             if i == problem.first[j] + now.level[j] or now.turn[i] != now.turn[i - 1]:
                 at += 1
             tangent.slider[i, at] = 1.0
-            tangent.pull[j, at] += problem.spring[i]
 
 
 @kernel
-def _put_column(problem, row, motion, c, count, length):
-    """Fill the series of one column over the present step."""
-    modes, column, tangent, chi = problem.squares.size, motion.column, motion.tangent, problem.chi
-    scale, damped = length * length / (row.r * row.r), length / row.r
+def _put_pushes(problem, motion, k, first):
+    """Put term k of the forces in the columns from `first` on."""
+    tangent, modes = motion.tangent, problem.squares.size
+    for j in range(problem.moved.size):
+        at = problem.first[j] + j + motion.now.level[j]
+        force = filled(0.0)
+        for i in range(modes):
+            share = problem.left[at] * problem.chi[j, i]
+            force = force + share * load(motion.column, (k * modes + i) * LANES)
+        if k == 0:
+            force = force - load(tangent.pull, at * tangent.pull.shape[1] + first)
+        store(force, motion.push, j * LANES)
+
+
+@kernel
+def _put_columns(problem, row, motion, first, count, length):
+    """Fill the series of the columns from `first` on over the present step."""
+    modes, column, tangent = problem.squares.size, motion.column, motion.tangent
+    scale, damped, width = length * length / (row.r * row.r), length / row.r, motion.tangent.q.shape[1]
     for i in range(modes):
-        column[0, i], column[1, i] = tangent.q[i, c], length * tangent.p[i, c]
+        store(load(tangent.q, i * width + first), column, i * LANES)
+        store(length * load(tangent.p, i * width + first), column, (modes + i) * LANES)
     for k in range(count - 2):
+        _put_pushes(problem, motion, k, first)
+        here, next_ = k * modes, (k + 1) * modes
         for i in range(modes):
-            column[k + 2, i] = 0.0
-        put_term(problem, column, k, scale, damped)
-        for j in range(problem.moved.size):
-            z = 0.0
-            for i in range(modes):
-                z += chi[j, i] * column[k, i]
-            force = problem.left[problem.first[j] + j + motion.now.level[j]] * z
-            if k == 0:
-                force -= tangent.pull[j, c]
-            end_term(problem, column, k, j, scale * force)
-        for i in range(modes):
-            column[k + 2, i] *= INVERSE[k]
+            total = (-scale * problem.squares[i]) * load(column, (here + i) * LANES)
+            for j in range(problem.moved.size):
+                total = total - (scale * problem.chi[j, i]) * load(motion.push, j * LANES)
+            for n in range(0 if problem.coupled else i, modes if problem.coupled else i + 1):
+                drag = damped * (k + 1.0) * problem.damping[i, n]
+                total = total - drag * load(column, (next_ + n) * LANES)
+            store(INVERSE[k] * total, column, (next_ + modes + i) * LANES)
 
 
 @kernel
 def advance_tangent(problem, row, motion, count, length, x):
     """Move the derivatives on by x of the present step."""
-    tangent, column = motion.tangent, motion.column
-    for c in range(tangent.count[0]):
-        _put_column(problem, row, motion, c, count, length)
-        for i in range(problem.squares.size):
-            q, p = 0.0, 0.0
+    tangent, column, modes = motion.tangent, motion.column, problem.squares.size
+    width = tangent.q.shape[1]
+    for first in range(0, tangent.count[0], LANES):
+        _put_columns(problem, row, motion, first, count, length)
+        for i in range(modes):
+            q, p = filled(0.0), filled(0.0)
             for k in range(count - 1, -1, -1):
                 p = p * x + q
-                q = q * x + column[k, i]
-            tangent.q[i, c], tangent.p[i, c] = q, p / length
+                q = q * x + load(column, (k * modes + i) * LANES)
+            store(q, tangent.q, i * width + first)
+            store((1.0 / length) * p, tangent.p, i * width + first)

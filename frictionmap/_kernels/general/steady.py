@@ -314,8 +314,8 @@ def measure(problem, friction, halves, workspace, what):
     Returns
     -------
     (followed, multiplier) : half periods followed, 0 where the motion could not be; the largest modulus of
-        the multipliers over the steady period, NaN where NOTHING is kept, or parts of half a period tell the
-        error of the state
+        the multipliers over the steady period, NaN where NOTHING is kept, or the error of the state follows
+        from parts of half a period
     """
     row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     both = halves if halves % 2 == 0 or what == NOTHING or what == RANGES else 2 * halves

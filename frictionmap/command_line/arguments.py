@@ -461,7 +461,7 @@ def _takes_grids(command: Callable[[str, str, str], argparse.ArgumentParser]) ->
     text = "Determine the regime and the stops per cycle of every cell of a grid; write NetCDF."
     sub = command("map", "regime of every cell of a grid, or the boundaries alone", text)
     _takes_config(sub, out="OUT.nc|OUT.zarr")
-    text = "compute the regime boundaries only, as the command boundaries does; no cell is classified"
+    text = "compute the regime boundaries only; no cell is classified"
     sub.add_argument("--boundaries-only", action="store_true", dest="boundaries_only", help=text)
     _takes_borders(sub, "with --boundaries-only, ")
     _takes_threads(sub)
@@ -472,10 +472,6 @@ def _takes_grids(command: Callable[[str, str, str], argparse.ArgumentParser]) ->
     _takes_config(sub)
     _takes_threads(sub)
     _takes_yes(sub)
-    text = "Compute the regime boundaries over frequency, without classifying cells; write NetCDF."
-    sub = command("boundaries", "regime boundaries only, as map --boundaries-only", text)
-    _takes_config(sub)
-    _takes_borders(sub)
 
 
 def _takes_borders(sub: argparse.ArgumentParser, when: str = "") -> None:
@@ -491,16 +487,21 @@ def _takes_files(command: Callable[[str, str, str], argparse.ArgumentParser]) ->
         "Draw any file written by the other commands, or the structure of a configuration CONFIG.toml.",
     )
     _takes_picture(sub)
-    text = "Write a map, or a slice of one, as NetCDF or as a table (CSV)."
-    sub = command("export", "map or slice as NetCDF or CSV", text)
+    text = (
+        "Write a result, or a slice of one, as NetCDF or as a table (CSV): a row per cell of a map, per "
+        "frequency of response curves, per instant of a motion, per motion of several ones; masses and "
+        "contacts are columns, with the unit in the header."
+    )
+    sub = command("export", "any output file, or a slice, as a table (CSV) or NetCDF", text)
     sub.add_argument("file", metavar="FILE", type=Path, help="file to read: FILE.nc, or a store FILE.zarr")
     text = "OUT.nc or OUT.csv, or - for CSV on standard output (default: FILE.csv in the current folder)"
     _takes_output(sub, "OUT", text, _file_or_stream)
     _takes_choices(sub)
     _takes_over(sub, "write")
     text = (
-        "CSV of a motion or of response curves with all variables, one row per point of all axes (default: "
-        "time, displacements and friction forces; regime, stops, amplitudes and phases per frequency)"
+        "CSV with all variables, also ratios where there are values in SI units (default: of motions time, "
+        "displacements and friction forces; of curves regime, stops, amplitudes and phases; of several "
+        "motions peaks, stops and places of rest)"
     )
     sub.add_argument("--all", action="store_true", dest="everything", help=text)
     _takes_info(command("info", "summary of a file", "Summarise the contents of a file on one screen."))
@@ -545,7 +546,10 @@ def _takes_beginnings(command: Callable[[str, str, str], argparse.ArgumentParser
 
 
 def _takes_setup(commands: argparse._SubParsersAction) -> None:
-    """Add `setup` with what editors and shells need; each part is a command of its own as well, unlisted."""
+    """Add `setup` with what editors and shells need, and older commands, which help does not list.
+
+    Each part of `setup` is a command of its own as well, and `boundaries` is `map --boundaries-only`.
+    """
     text = "Set up an editor or a shell: the JSON Schema of configurations, or a completion script."
     sub = commands.add_parser(
         "setup", help="for editors and shells: JSON Schema, completion", description=text
@@ -556,6 +560,10 @@ def _takes_setup(commands: argparse._SubParsersAction) -> None:
         lambda name, _, about: commands.add_parser(name, description=about),
     ):
         _takes_parts(add)
+    text = "Compute the regime boundaries over frequency, as map --boundaries-only does; write NetCDF."
+    older: argparse.ArgumentParser = commands.add_parser("boundaries", description=text)
+    _takes_config(older)
+    _takes_borders(older)
 
 
 def _takes_parts(command: Callable[[str, str, str], argparse.ArgumentParser]) -> None:

@@ -620,7 +620,7 @@ def _plot(options: Options) -> None:
 
 
 def _export(options: Options) -> None:
-    from ..files.export import check_export, csv_of, write_export
+    from ..files.export import check_export, csv_of, in_rows, write_export
     from ..files.places import claimed
 
     if options.output == STREAM:
@@ -633,7 +633,7 @@ def _export(options: Options) -> None:
         ds = _chosen(options)
         output.fill(lambda scratch: write_export(ds, scratch, options.command_line, options.everything))
     if not options.quiet:
-        _print(f"wrote {path}")
+        _print(f"wrote {path}{in_rows(ds) if path.suffix.lower() != '.nc' else ''}")
 
 
 def _info(options: Options) -> None:
@@ -779,7 +779,7 @@ def _boundaries_alone(options: Options) -> None:
     if not options.boundaries_only:
         if options.borders:
             raise InputError(
-                "cannot use --borders with the cells of a map: it belongs to boundaries; "
+                "cannot use --borders with the cells of a map: it is for boundaries alone; "
                 "add --boundaries-only, or border_r and border_beta to solver.outputs"
             )
         return

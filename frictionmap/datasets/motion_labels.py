@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
-from .labels import Label
+from .labels import SI, Label
 
 #: Dimensions of variables of every motion.
 CELL = ("record", "scale", "mu", "beta")
@@ -199,9 +199,9 @@ for _of, _measure in AVERAGED.items():
     _square = _SQUARED + _measure
     IN_SI[_square] = (*IN_SI.get(_square, ()), f"{_of}_variance", f"{_of}_variance_error")
 
-_SI_UNITS = {
-    "length": ("m", "m"), "velocity": ("m s-1", "m_s"), "acceleration": ("m s-2", "m_s2"),
-    "force": ("N", "N"), "work": ("J", "J"),
+#: SI units by measure: as in CF conventions, and at the end of a name.
+SI_UNITS = {
+    **SI,
     f"{_SQUARED}length": ("m2", "m2"), f"{_SQUARED}velocity": ("m2 s-2", "m2_s2"),
     f"{_SQUARED}acceleration": ("m2 s-4", "m2_s4"), f"{_SQUARED}force": ("N2", "N2"),
 }  # fmt: skip
@@ -216,7 +216,7 @@ def stuck_times(time: np.ndarray, directions: np.ndarray) -> np.ndarray:
 
 def si_name(name: str, measure: str) -> str:
     """Name of a variable in its SI unit."""
-    return f"{name}_{_SI_UNITS[measure][1]}"
+    return f"{name}_{SI_UNITS[measure][1]}"
 
 
 def _si_label(name: str, measure: str) -> Label:
@@ -224,7 +224,7 @@ def _si_label(name: str, measure: str) -> Label:
     return label._replace(
         long_name=re.split(", (?:squared )?over ", label.long_name)[0],
         comment="",
-        units=_SI_UNITS[measure][0],
+        units=SI_UNITS[measure][0],
     )
 
 

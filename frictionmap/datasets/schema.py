@@ -47,7 +47,7 @@ def is_own(what: str) -> bool:
     return what in _OWN
 
 
-def _labels_by_name(what: str) -> dict[str, Label]:
+def labels_by_name(what: str) -> dict[str, Label]:
     """Labels of axes and variables of a kind of dataset."""
     return _OWN[what]() if what in _OWN else {**COORDINATES, **BESIDE, **labels_of(what)}
 
@@ -152,7 +152,7 @@ def check_structure(ds: xr.Dataset, in_parts: bool = False) -> None:
         if key in ds.attrs:
             checks.number(ds.attrs[key], f"the attribute {key}", above=0.0)
     _check_dimensions(ds)
-    known = _labels_by_name(what)
+    known = labels_by_name(what)
     if not is_own(what) and not any(name in LABELS for name in ds.variables):
         names = ", ".join(map(str, ds.variables)) or "none"
         raise InputError(
@@ -216,7 +216,7 @@ def checked_values(name: str, given: np.ndarray, what: str = "") -> np.ndarray:
     Integers may be stored as floats, as other programs do for the sake of a fill value.
     what : kind of the dataset
     """
-    label = _labels_by_name(what)[name]
+    label = labels_by_name(what)[name]
     if label.dtype is np.str_:
         return given.astype(label.dtype)
     with np.errstate(invalid="ignore", over="ignore"):

@@ -1,7 +1,6 @@
 """Standard form, tables and summaries of motions without a load."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -110,33 +109,3 @@ def _range(ds: xr.Dataset, name: str) -> str:
     values, unit = (ds[beside].values, " m/s") if beside in ds else (ds[name].values, "")
     low, high = (float(f(values)) for f in (np.min, np.max))
     return f"{low:.6g}{unit}" if low == high else f"{low:.6g} to {high:.6g}{unit}"
-
-
-def belt_table(ds: xr.Dataset) -> Any:
-    """Data frame with a row for every cell; what every mass or contact has is one column for each."""
-    columns: dict[str, xr.DataArray] = {}
-    in_time = "time" in ds.coords
-    for name, one in ds.data_vars.items():
-        if in_time and "time" not in one.dims:
-            continue
-        words = _decoded(one)
-        parts = [str(dim) for dim in one.dims if dim in ("dof", "contact", "spring")]
-        if not parts:
-            columns[str(name)] = words
-            continue
-        for k in range(one.sizes[parts[0]]):
-            columns[f"{name}_{k + 1}"] = words.isel({parts[0]: k}, drop=True)
-    dims = [dim for dim in ("time", *CELL) if dim in ds.dims]
-    beside = [str(name) for name in ds.coords if name not in dims and name != "time_s"]
-    return xr.Dataset(columns).drop_vars(beside, errors="ignore").to_dataframe(dim_order=dims)
-
-
-def _decoded(one: xr.DataArray) -> xr.DataArray:
-    """Codes by their names."""
-    label = BELTS[str(one.name)]
-    if not label.codes or label.flags == "flag_masks":
-        return one
-    words = one.astype(object)
-    for code in label.codes:
-        words = words.where(one != code.value, code.name)
-    return words

@@ -9,11 +9,10 @@ import xarray as xr
 from .. import checks
 from ..datasets.estimate_labels import OF_PARAMETERS
 from ..datasets.labels import COORDINATES
+from ..datasets.motion_labels import CELL, axes_of_motions
 from ..datasets.schema import kind
 from ..errors import InputError
-from .belts import belt_table
-from .motions import table_of
-from .short_tables import decode_flags, short_table
+from .short_tables import cell_table, decode_flags, is_single, short_table
 from .storage import write_netcdf
 
 FORMATS = (".nc", ".csv")
@@ -41,50 +40,43 @@ def csv_of(ds: xr.Dataset, everything: bool = False) -> str:
     return str(_table(ds, everything).to_csv(lineterminator="\n"))
 
 
-def _table(ds: xr.Dataset, everything: bool = False) -> Any:
-    """Data frame: of motions and response curves a short one, else a row for every point of all axes.
+def in_rows(ds: xr.Dataset) -> str:
+    """What a row of the table of several motions is, and how to get one over time; of others nothing."""
+    if kind(ds) != "history" or "time" not in ds.dims or is_single(ds):
+        return ""
+    axes = [axis for axis in (*axes_of_motions(ds), *CELL) if ds.sizes.get(axis, 1) > 1]
+    at = " ".join(f"--at {axis}={ds[axis].values[0]:g}" for axis in axes)
+    return f", a row per motion; {at} writes one of them over time"
 
-    What every contact has is one column for each, such as stops_per_cycle_2.
-    Of estimates it is a row for every parameter; of shares every outcome and quantile has a column; of the
-    result of a design question it is the curve that was searched.
+
+def _table(ds: xr.Dataset, everything: bool = False) -> Any:
+    """Data frame: of motions, curves and cells a short one, else a row for every point of all axes.
+
+    Of estimates it is a row for every parameter; of the result of a design question it is the curve that was
+    searched.
     """
+    what = kind(ds)
     short = None if everything else short_table(ds)
     if short is not None:
         return short
-    if kind(ds) == "estimates":
+    if what == "estimates":
         return ds[list(OF_PARAMETERS)].to_dataframe()
-    if kind(ds) == "design":
+    if what == "design":
         over = next((axis for axis in ("beta_search", "r_search", "speed_search") if axis in ds.coords), None)
         lines = [name for name in ds.data_vars if ds[name].dims == (over,)]
         return (ds[lines] if over else ds).to_dataframe()
-    if kind(ds) == "belt":
-        return belt_table(ds)
-    if kind(ds) in ("history", "spectrum"):
-        return table_of(ds)
-    if kind(ds) == "shares":
-        ds = _split_dimension(_split_dimension(ds, "outcome"), "quantile")
-    table: dict[str, xr.DataArray] = {}
+    if what in ("belt", "history", "spectrum", "shares"):
+        return cell_table(ds, everything)
     dims = [str(name) for name in COORDINATES if name in ds.dims]
+    table: dict[str, xr.DataArray] = {}
     for name, variable in ds.data_vars.items():
         if set(variable.dims) <= set(dims):
-            table[str(name)] = decode_flags(variable)
+            table[str(name)] = decode_flags(variable, what)
         elif set(variable.dims) - set(dims) == {"contact"}:
-            table |= _split_contacts(str(name), decode_flags(variable))
+            table |= _split_contacts(str(name), decode_flags(variable, what))
     wide = xr.Dataset(table)
     checks.cells(1, 1, math.prod(wide.sizes.values()), name="a table")
     return wide.to_dataframe(dim_order=[dim for dim in dims if dim in wide.dims])
-
-
-def _split_dimension(ds: xr.Dataset, dim: str) -> xr.Dataset:
-    """Replace variables along a dimension by one variable per value."""
-    columns: dict[str, xr.DataArray] = {}
-    for name, variable in ds.data_vars.items():
-        if dim not in variable.dims:
-            columns[str(name)] = variable
-            continue
-        for k, value in enumerate(ds[dim].values):
-            columns[f"{name}_{value}"] = variable.isel({dim: k}, drop=True)
-    return xr.Dataset(columns)
 
 
 def _split_contacts(name: str, variable: xr.DataArray) -> dict[str, xr.DataArray]:

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..datasets.labels import attributes
+from ..datasets.amounts import amounts_of
+from ..datasets.labels import SCALES, attributes
 from ..datasets.motion_labels import (
     AVERAGED,
     CELL,
@@ -97,7 +98,9 @@ def _heading(one: xr.Dataset, further: Sequence[str]) -> str:
     for name, unusual in (("scale", 1.0), ("mu", 1.0)):
         if float(one[name]) != unusual:
             words.append(f"{name} {float(one[name]):g}")
-    return f"{', '.join(words)}, beta {float(one['beta']):.4g}"
+    beta = float(one["beta"])
+    friction = amounts_of(one).friction(beta) if SCALES["force"] in one.attrs else f"beta {beta:.4g}"
+    return f"{', '.join(words)}, {friction}"
 
 
 def _summary(one: xr.Dataset) -> str:
@@ -127,7 +130,7 @@ def _ranges(ds: xr.Dataset) -> Iterator[str]:
 
 
 def _listed(values: Any, unit: str = "") -> str:
-    text = ", ".join(f"{value:.4g}" for value in np.atleast_1d(values).ravel().tolist())
+    text = ", ".join(f"{value + 0.0:.4g}" for value in np.atleast_1d(values).ravel().tolist())  # no -0
     return f"{text} {unit}".rstrip()
 
 
@@ -182,23 +185,3 @@ def _averages(one: xr.Dataset, name: str, words: str) -> Iterator[tuple[str, str
     batches = int(str(one.attrs["statistics"]).split(" batches")[0].rsplit(" ", 1)[1])
     if likeness > 2.0 / np.sqrt(batches):
         yield "too short", f"means of neighbouring batches are alike ({likeness:.2f}): errors are too small"
-
-
-def table_of(ds: xr.Dataset) -> Any:
-    """Data frame: of one motion a row for every time, of several, and of spectra, a row for every motion."""
-    single = all(ds.sizes.get(dim, 1) == 1 for dim in (*CELL, *axes_of_motions(ds)))
-    if single and "time" in ds.dims:
-        one = ds.squeeze([dim for dim in CELL if dim in ds.dims], drop=True)
-        names = [name for name in one.data_vars if "time" in one[name].dims]
-    else:
-        axes = {*CELL, "period", "dof", "contact", *axes_of_motions(ds)}
-        one, names = ds, [name for name in ds.data_vars if not set(ds[name].dims) - axes]
-    columns = {}
-    for name in names:
-        parts = [dim for dim in ("dof", "contact") if dim in one[name].dims]
-        for k in range(one.sizes[parts[0]]) if parts else (None,):
-            own = one[name] if k is None else one[name].isel({parts[0]: k}, drop=True)
-            columns[str(name) if k is None else f"{name}_{k + 1}"] = own
-    wide = xr.Dataset(columns)
-    further = [dim for dim in axes_of_motions(ds) if dim in wide.dims]
-    return wide.to_dataframe(dim_order=[*further, *(dim for dim in wide.dims if dim not in further)])

@@ -219,7 +219,7 @@ def _load(
         if several and not contacts and not is_own(kind(ds)):
             ds, several = ds.drop_dims("contact"), False
         if at or (further_axes(ds) and not is_own(kind(ds))):
-            ds = choose(ds, at, "contact" if several else None)
+            ds = choose(ds, at, "contact" if several and not is_own(kind(ds)) else None)
         if MARKS in ds and not ds[MARKS].values.all():  # boundaries of blocks to come are not known
             ds = ds.drop_vars([name for name in CURVES if name in ds])
         check_structure(ds)

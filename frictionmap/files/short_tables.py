@@ -1,22 +1,32 @@
-"""Short tables: one row per instant of a motion, one row per frequency of response curves.
+"""Short tables: a row per instant of a motion, per frequency of response curves, or per cell.
 
 Columns are named as measured files name theirs: the quantity, the number of the mass or contact, and the
 unit, such as x_1_m.  Lengths, forces and times are in SI units where the reference values are known.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from .. import checks
 from ..datasets.amounts import DIGITS, amounts_of
-from ..datasets.labels import LABELS, SI
-from ..datasets.motion_labels import CELL, axes_of_motions
-from ..datasets.schema import kind
+from ..datasets.labels import MEASURES, SCALES, in_si
+from ..datasets.motion_labels import AVERAGED, AVERAGES, CELL, SI_UNITS, axes_of_motions
+from ..datasets.schema import kind, labels_by_name
+from .slices import further_axes
 
 #: Columns of motions.
-_OF_MOTIONS = ("x", "acceleration", "z", "friction")
+_OF_MOTIONS = ("x", "acceleration", "z", "friction", "normal_force", "spring_force")
+
+#: Columns of motions side by side; averages of stationary motions besides.
+_OF_SEVERAL = (
+    *("amplitude", "acceleration_amplitude", "contact_amplitude", "friction_amplitude", "base_force"),
+    *("residual", "stops", "slips", "sliding_distance", "work_friction", "asleep_time", "beta_hold"),
+    "status",
+)
 
 #: Columns of response curves; those of first harmonics, forces and work where there are no amplitudes.
 _OF_CURVES = (
@@ -29,46 +39,126 @@ _OTHERWISE = (
 )
 
 #: Units behind a name that has none, as measured files write them.
-_ENDINGS = {"radian": "rad", "s": "s", "m": "m", "N": "N", "Hz": "Hz", "m s-2": "m_s2"}
+_ENDINGS = {"radian": "rad", **dict(SI_UNITS.values())}
+
+#: Dimensions whose values are columns side by side.
+_PARTS = ("dof", "contact", "spring")
+
+#: Axes of cells, in the order of rows; further axes come before them.
+_AXES = ("record", "scale", "mu", "wall_speed", "r", "beta", "period")
+
+#: Names of axes along which there are several values of one cell: each is a column.
+_SPLIT = ("outcome", "quantile")
 
 
 def short_table(ds: xr.Dataset) -> Any:
-    """Data frame of a motion or of response curves; None of anything else, which has no short table."""
+    """Data frame with a row per instant, per frequency of curves, or else per cell; None of other results."""
     what = kind(ds)
     if what == "response" and "tau" in ds.dims:
         return _motion_table(ds, "tau")
-    if what == "history" and "time" in ds.dims and _is_single(ds):
+    if what == "belt" and "time" in ds.dims:
+        return _motion_table(ds, "time")
+    if what == "history" and "time" in ds.dims and is_single(ds):
         return _motion_table(ds.squeeze([dim for dim in CELL if dim in ds.dims], drop=True), "time")
     if what == "curves" and {"mu", "r", "beta"} <= set(ds.dims):
         return _curve_table(ds)
-    return None
+    if what == "history":
+        averages = [f"{name}_{end}" for name in AVERAGED for end in AVERAGES]
+        names = [own for name in (*_OF_SEVERAL, *averages) for own in (name, _with_si(ds, name))]
+        ds = ds[[name for name in dict.fromkeys(names) if name in ds]]
+    return cell_table(ds) if what in ("map", "boundaries", "shares", "belt", "history", "spectrum") else None
 
 
-def _is_single(ds: xr.Dataset) -> bool:
+def cell_table(ds: xr.Dataset, everything: bool = False) -> Any:
+    """Data frame with a row per cell, or per motion; masses, contacts and springs are columns.
+
+    everything : ratios also where there are values in SI units; of one motion a row per instant
+    """
+    in_time = everything and "time" in ds.dims and is_single(ds)
+    if in_time:
+        ds = ds.squeeze([dim for dim in CELL if dim in ds.dims], drop=True)
+    ds = _with_quantiles_in_si(ds)
+    for dim in _SPLIT:
+        ds = _split_dimension(ds, dim)
+    axes = [dim for dim in further_axes(ds) if dim not in (*_AXES, *_PARTS)]
+    axes = ["time"] if in_time else [*axes, *(dim for dim in _AXES if dim in ds.dims)]
+    table: dict[str, xr.Variable] = {}
+    if SCALES["force"] in ds.attrs and "beta" in axes and "friction_force" not in ds.coords:
+        force = ds["beta"] * float(ds.attrs[SCALES["force"]])
+        ds = ds.assign_coords(friction_force=force.assign_attrs(units="N"))
+    beside = [name for name in ds.coords if name not in axes and set(ds[name].dims) <= set(axes)]
+    for name in map(str, (*beside, *ds.data_vars)):
+        if (everything or not _ending(ds, name) or name in beside) and not (
+            in_time and "time" not in ds[name].dims
+        ):
+            table |= dict(_columns(ds, name, axes, everything or name in beside))
+    wide = xr.Dataset(table, {dim: ds[dim].variable for dim in axes if dim in ds.coords})
+    checks.cells(1, 1, math.prod(wide.sizes.values()), name="a table")
+    rows = wide.to_dataframe(dim_order=[dim for dim in axes if dim in wide.dims])
+    return rows.rename_axis(index=lambda axis: f"{axis}_s" if ds[axis].attrs.get("units") == "s" else axis)
+
+
+def _with_quantiles_in_si(ds: xr.Dataset) -> xr.Dataset:
+    """Shares have quantiles of ratios, and what 1 is of them."""
+    for measure, scale in SCALES.items():
+        for name in MEASURES[measure] if scale in ds.attrs else ():
+            if (own := f"{name}_quantile") in ds:
+                ds = ds.assign({in_si(own, measure): ds[own] * float(ds.attrs[scale])})
+    return ds
+
+
+def _split_dimension(ds: xr.Dataset, dim: str) -> xr.Dataset:
+    """Replace variables along a dimension by one variable per value."""
+    if dim not in ds.dims:
+        return ds
+    columns: dict[str, xr.DataArray] = {}
+    for name, variable in ds.data_vars.items():
+        if dim not in variable.dims:
+            columns[str(name)] = variable
+            continue
+        unit = _ending(ds, str(name))
+        base = str(name).removesuffix(f"_{unit}")
+        for k, value in enumerate(ds[dim].values):
+            column = "_".join(filter(None, (base, str(value), unit)))
+            columns[column] = variable.isel({dim: k}, drop=True)
+    return xr.Dataset(columns, attrs=ds.attrs)
+
+
+def is_single(ds: xr.Dataset) -> bool:
     """Whether motions in time are one motion."""
     return all(ds.sizes.get(dim, 1) == 1 for dim in (*CELL, *axes_of_motions(ds)))
 
 
 def _with_si(ds: xr.Dataset, name: str) -> str:
     """The variable in its SI unit, if there is one."""
-    for _, ending in SI.values():
-        if f"{name}_{ending}" in ds:
-            return f"{name}_{ending}"
-    return name
+    return next((own for end in _ENDINGS.values() if (own := f"{name}_{end}") in ds.variables), name)
 
 
-def _columns(ds: xr.Dataset, name: str, dims: Sequence[str]) -> Iterator[tuple[str, np.ndarray]]:
-    """A variable as columns along some dimensions, one for each mass or contact: names and values."""
-    own = _with_si(ds, name)
-    variable = ds[own]
-    unit = own.removeprefix(name).lstrip("_") or _ENDINGS.get(str(variable.attrs.get("units", "1")), "")
-    parts = [dim for dim in ("dof", "contact") if dim in variable.dims]
+def _ending(ds: xr.Dataset, name: str) -> str:
+    """The unit at the end of a name, if the ratio is there under the name without it."""
+    ends = (end for end in _ENDINGS.values() if name.endswith(f"_{end}"))
+    return next((end for end in ends if name.removesuffix(f"_{end}") in ds.variables), "")
+
+
+def _columns(
+    ds: xr.Dataset, name: str, dims: Sequence[str], as_named: bool = False
+) -> Iterator[tuple[str, xr.Variable]]:
+    """A variable as columns along some dimensions, one for each mass or contact: names and values.
+
+    as_named : the variable itself, also where there is one in its SI unit
+    """
+    own = name if as_named else _with_si(ds, name)
+    variable = decode_flags(ds[own], kind(ds))
+    known = _ending(ds, own)
+    unit = known or _ENDINGS.get(str(variable.attrs.get("units", "1")), "")
+    base = own.removesuffix(f"_{known}")
+    parts = [dim for dim in _PARTS if dim in variable.dims]
     if set(variable.dims) - {*dims, *parts} or len(parts) > 1:
         return
     for k in range(variable.sizes[parts[0]]) if parts else (None,):
         part = variable if k is None else variable.isel({parts[0]: k})
-        column = "_".join(filter(None, (name, "" if k is None else _number(ds, parts[0], k), unit)))
-        yield column, part.transpose(*dims).values
+        column = "_".join(filter(None, (base, "" if k is None else _number(ds, parts[0], k), unit)))
+        yield column, part.transpose(*(dim for dim in dims if dim in part.dims)).variable
 
 
 def _number(ds: xr.Dataset, dim: str, k: int) -> str:
@@ -78,12 +168,13 @@ def _number(ds: xr.Dataset, dim: str, k: int) -> str:
 
 def _motion_table(ds: xr.Dataset, over: str) -> Any:
     """Displacements, displacements in contacts and friction forces over time."""
-    in_seconds = "time" in ds.coords and (over == "tau" or ds["time"].attrs.get("units") == "s")
-    time = ds["time"].values if in_seconds else ds[over].values
+    own = next((name for name in ("time_s", "time") if name in ds.coords), over)
+    in_seconds = own == "time_s" or (own == "time" and ds["time"].attrs.get("units") == "s")
+    time = ds[own if in_seconds else over].values
     columns = {"time_s" if in_seconds else over: time}
     for name in _OF_MOTIONS:
         if name in ds and over in ds[name].dims:
-            columns |= dict(_columns(ds, name, [over]))
+            columns |= {column: values.values for column, values in _columns(ds, name, [over])}
     return _frame(columns)
 
 
@@ -100,9 +191,8 @@ def _curve_table(ds: xr.Dataset) -> Any:
             place = words.friction(beta, digits=DIGITS) + (f", mu = {mu:g}" if ds.sizes["mu"] > 1 else "")
             one = ds.isel(mu=m, beta=b)
             for name in names:
-                one[name] = decode_flags(one[name])
                 columns |= {
-                    f"{column} ({place})" if several else column: values
+                    f"{column} ({place})" if several else column: values.values
                     for column, values in _columns(one, name, ["r"])
                 }
     return _frame(columns)
@@ -115,12 +205,18 @@ def _frame(columns: Mapping[str, np.ndarray]) -> Any:
     return xr.Dataset(variables, {index: columns[index]}).to_dataframe()[names]
 
 
-def decode_flags(variable: xr.DataArray) -> xr.DataArray:
-    """Replace codes by their names."""
-    label = LABELS.get(str(variable.name))
-    if label is None or not label.codes or label.flags == "flag_masks":
+def decode_flags(variable: xr.DataArray, what: str) -> xr.DataArray:
+    """Replace codes by their names.
+
+    what : kind of the file
+    """
+    label = labels_by_name(what).get(str(variable.name))
+    if label is None or not label.codes:
         return variable
     names = {code.value: code.name for code in (*label.codes, *label.also)}
+    if label.flags == "flag_masks":
+        several = np.unique(variable.values)
+        names = {k: " | ".join(name for code, name in names.items() if code & k) for k in several.tolist()}
     words = variable.astype(object)
     for value, name in names.items():
         words = words.where(variable != value, name)

@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from .. import checks
-from ..datasets.labels import REFERENCES, attributes
+from ..datasets.labels import REFERENCES, SCALES, attributes
 from ..datasets.motion_labels import IN_SI, MOTIONS, OF_CONTACTS, SI_LABELS, TIMES, si_name
 from ..datasets.provenance import excitation_of, now
 from ..errors import InputError
@@ -236,6 +236,7 @@ def _motions(
         "source": f"frictionmap {__version__}", "references": REFERENCES, "system": system.describe(),
         "excitation": excitation_of(system), "history": f"{now()} frictionmap.history",
         **record_attributes(structure.system, grid.records),
+        **{name: one for kind, name in SCALES.items() if (one := scales.of(kind)) is not None},
     }  # fmt: skip
     if averages is not None:
         factors = [scale_of(one, scales).time for one in grid.records]
@@ -367,7 +368,8 @@ def _scalars(structure: Structure, motions: Motions, one: Found, asked: Asked) -
         "residual": phi @ one.place if rests else np.full(len(phi), np.nan),
         "contact_residual": motions.contact_places(one) if rests else np.full(elastic.size, np.nan),
         "stops": np.where(elastic, np.nan, stops), "slips": np.where(elastic, stops, np.nan),
-        "turns": kept.changes[2], "stuck_fraction": one.counts[2] / one.end if one.end else 1.0 + 0.0 * stops,
+        "turns": kept.changes[2],
+        "stuck_fraction": np.minimum(one.counts[2] / one.end, 1.0) if one.end else 1.0 + 0.0 * stops,
         "sliding_distance": kept.record.distance, "largest_slide": kept.slides[1],
         "work_load": kept.works[0], "work_friction": kept.record.works[0], "work_walls": walls,
         "work_damping": kept.works[0] + walls - kept.record.works[0].sum() - (energy - before),

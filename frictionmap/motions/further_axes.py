@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
+from ..datasets.labels import SCALES
 from ..datasets.motion_labels import motion_labels
 from ..datasets.variables import coordinate_of_study
 from ..errors import InputError
@@ -62,7 +63,12 @@ def stacked(found: Sequence[xr.Dataset], sizes: Mapping[str, int]) -> xr.Dataset
         values = np.array([_padded(ds[name].variable, str(name), lengths) for ds in found])
         values = values.reshape(*sizes.values(), *values.shape[1:])
         variables[name] = xr.Variable((*sizes, *one.dims), values, one.attrs)
-    return xr.Dataset(variables, longest.coords, found[0].attrs)
+    first = found[0].attrs
+    differ = [
+        name for name in SCALES.values() if any(one.attrs.get(name) != first.get(name) for one in found)
+    ]
+    attrs = {name: value for name, value in first.items() if name not in differ}
+    return xr.Dataset(variables, longest.coords, attrs)
 
 
 def _padded(one: xr.Variable, name: str, lengths: Mapping[str, int]) -> np.ndarray:

@@ -1,6 +1,5 @@
 """Figures, panels, axes and legends."""
 
-import re
 import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -15,7 +14,7 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 from ..errors import InputError
 from .grids import Grid
 from .options import current
-from .sizes import figure_size, height_is_free, points
+from .sizes import figure_size, height_is_free, points, setting_of
 from .words import balanced
 
 if TYPE_CHECKING:
@@ -32,8 +31,11 @@ MOST_PANELS = 60
 _LEGEND_SIZE = 8.0
 _LETTER, _LINE = 0.0078, 0.021
 
-#: Width of the mark of an entry with the gap between two columns of a legend, also in small figures [inch].
-_MARK, _SMALL_MARK = 0.55, 0.4
+#: Width of the mark of an entry with the gap between two columns of a legend [inch].
+_MARK = 0.55
+
+#: Settings of matplotlib that make up the width of a legend besides its texts, in sizes of a letter.
+_SPACES = ("handlelength", "handletextpad", "columnspacing", "borderpad")
 
 #: Height of the labels below axes [inch], and largest share of a figure that a legend below axes may take.
 _LABELS, _MOST_LEGEND = 0.45, 0.5
@@ -147,14 +149,17 @@ def _columns(handles: Sequence[Handle], width: float) -> int:
     return max(1, min(len(handles), int(width / (longest * letter + _MARK))))
 
 
-def _narrow_columns(handles: Sequence[Handle], width: float) -> int:
-    """Number of columns that a legend has room for, each as wide as its widest entry."""
-    letter = _LETTER * points(_LEGEND_SIZE, "legend.fontsize")
-    labels = [re.sub(r"\\mathrm|[${}_]", "", str(handle.get_label())) for handle in handles]
-    widths = [len(re.sub(r"\\\w+", "x", label)) * letter + _SMALL_MARK for label in labels]
+def _narrow_columns(figure: Figure, handles: Sequence[Handle], width: float) -> int:
+    """Number of columns that a legend has room for, each as wide as its widest entry, as measured."""
+    size = points(_LEGEND_SIZE, "legend.fontsize")
+    length, pad, gap, border = (float(setting_of(f"legend.{name}")) * size / 72.0 for name in _SPACES)
+    texts = [figure.text(0.0, 0.0, str(handle.get_label()), fontsize=size) for handle in handles]
+    widths = [text.get_window_extent().width / figure.dpi + length + pad for text in texts]
+    for text in texts:
+        text.remove()
     for columns in range(len(handles), 1, -1):
         parts = np.array_split(widths, columns)  # as matplotlib fills the columns
-        if sum(float(part.max()) for part in parts) <= width:
+        if sum(float(part.max()) for part in parts) + (columns - 1) * gap + 2.0 * border <= width:
             return columns
     return 1
 
@@ -169,7 +174,8 @@ def legend_below(figure: Figure, handles: Sequence[Handle], caption: str) -> Non
     if not handles and not caption:
         return
     width = figure.get_figwidth() - (0.4 if options.size is None else 0.1)
-    columns = (_columns if options.size is None else _narrow_columns)(handles, width)
+    wide = options.size is None
+    columns = _columns(handles, width) if wide else _narrow_columns(figure, handles, width)
     heading = balanced(caption, int(width / (_LETTER * size)))
     if height_is_free():
         lines = heading.count("\n") + 1 + -(-len(handles) // columns)

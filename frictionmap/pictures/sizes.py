@@ -41,6 +41,11 @@ _SETTINGS = cast(Mapping[str, Any], mpl.rcParams)
 _DEFAULTS = cast(Mapping[str, Any], mpl.rcParamsDefault)
 
 
+def setting_of(key: str) -> Any:
+    """A setting of matplotlib as it is now."""
+    return _SETTINGS[key]
+
+
 def _is_default(key: str) -> bool:
     return bool(_SETTINGS[key] == _DEFAULTS[key])
 

@@ -92,7 +92,7 @@ def run_python(code, folder):
 
 def test_command_lines_parse():
     found = list(commands(BLOCKS))
-    assert {words[0] for words in found} >= {"init", "map", "boundaries", "response", "plot", "info"}
+    assert {words[0] for words in found} >= {"init", "map", "response", "plot", "info"}
     for path in GUIDES:
         found += commands(blocks(path.read_text(encoding="utf-8")))
     assert ["--version"] in found  # it ends the program while it is parsed

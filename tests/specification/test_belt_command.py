@@ -68,7 +68,11 @@ def test_map_info_export_plot(config, capsys):
         rows = list(csv.DictReader(file))
     assert len(rows) == 8
     assert {row["regime"] for row in rows} <= {"steady_sliding", "stick_slip_cycle", "cycle_without_stops"}
-    assert float(rows[0]["x_max_1"]) == ds.x_max.values[0, 0, 0, 0]
+    assert float(rows[0]["x_max_1_m"]) == ds.x_max_m.values[0, 0, 0, 0]
+    assert float(rows[0]["wall_speed_m_s"]) == ds.wall_speed_m_s.values[0]
+    assert main(["export", "pad.nc", "--all", "-o", "all.csv"]) == 0
+    with open("all.csv", newline="") as file:
+        assert float(next(csv.DictReader(file))["x_max_1"]) == ds.x_max.values[0, 0, 0, 0]
     assert main(["plot", "pad.nc"]) == 0
     assert matplotlib.image.imread("pad.png").ndim == 3
 
@@ -184,7 +188,8 @@ def test_response(config, capsys):
     with open("pad-response.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 2000
-    assert float(rows[7]["x_1"]) == float(ds.x[0, 7])
+    assert [name for name in rows[0] if name[:8] != "normal_f"] == ["time_s", "x_1_m", "z_m", "friction_N"]
+    assert float(rows[7]["x_1_m"]) == float(ds.x_m[0, 7])
 
 
 def test_works_of_a_cycle_balance():

@@ -471,8 +471,10 @@ def test_help_and_version(capsys, arguments):
     assert err == ""
     assert "frictionmap" in out
     if arguments == ["--help"]:
-        for command in ("map", "boundaries", "response", "plot", "info"):
+        for command in ("map", "curves", "response", "plot", "info"):
             assert re.search(rf"^ +{command}\b", out, re.MULTILINE)
+        for older in ("boundaries", "schema", "completion"):
+            assert not re.search(rf"^ +{older}\b", out, re.MULTILINE)
 
 
 def test_help_on_a_command_is_its_own_help(capsys):

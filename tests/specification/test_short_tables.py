@@ -16,6 +16,7 @@ TWO = fm.System(
     contacts=[fm.Contact("fixed-wall", 1), fm.Contact("between-masses", (1, 2), ratio=0.5)],
     mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.05,
 )  # fmt: skip
+CHAIN = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.05)
 
 
 def rows_of(text):
@@ -81,8 +82,67 @@ def test_one_motion_in_time_and_several(tmp_path):
     assert {"z", "friction"} <= set(head)
     assert "x_1_m" not in head
     assert len(columns["time"]) == one.sizes["time"]
-    several = fm.history(fm.System(damping_ratios=0.1), record, beta=[0.2, 0.3])
-    assert "record" in rows_of(csv_of(several))[0]
+
+
+def test_several_motions_in_time_have_a_row_each(tmp_path, capsys):
+    """Masses and contacts are columns, friction is also in newtons, and one of them can be had over time.
+
+    The first record moves nothing, and the share of the time in which it sticks is 1, not a little more.
+    """
+    pulses = {"kind": "half-sine", "duration": "0.2 s", "quantity": "force", "unit": "N"}
+    records = [fm.Record.pulse(amplitude=peak, **pulses) for peak in ("1 N", "30 N")]
+    ds = fm.history(TWO, records, beta=[0.2, 0.3], units=UNITS, after=4.0)
+    path = str(tmp_path / "suite.nc")
+    ds.to_netcdf(path)
+    assert main(["export", path, "-o", str(tmp_path / "suite.csv")]) == 0
+    said = "suite.csv, a row per motion; --at record=1 --at beta=0.2 writes one of them over time\n"
+    assert capsys.readouterr().out.endswith(said)
+    assert (ds.stuck_fraction.sel(record=1) == 1.0).all()
+    assert (ds.amplitude.sel(record=2) > 0.1).all()
+    head, columns = rows_of((tmp_path / "suite.csv").read_text())
+    assert len(columns["record"]) == 4
+    assert columns["friction_force_N"] == ["2.0", "3.0", "2.0", "3.0"]
+    for k in (1, 2):
+        wanted = ds.amplitude_m.sel(dof=k).transpose("record", "scale", "mu", "beta").values.ravel()
+        np.testing.assert_array_equal(numbers(columns[f"amplitude_{k}_m"]), wanted)
+        wanted = ds.stops.sel(contact=k).transpose("record", "scale", "mu", "beta").values.ravel()
+        np.testing.assert_array_equal(numbers(columns[f"stops_{k}"]), wanted)
+    assert not {"amplitude_1", "amplitude", "x_1", "z_max_1_m"} & set(head)
+    assert {"amplitude_1", "amplitude_1_m", "z_max_1_m"} <= set(rows_of(csv_of(ds, everything=True))[0])
+    at = ["--at", "record=2", "--at", "beta=0.3", "--quiet"]
+    assert main(["export", path, *at, "-o", str(tmp_path / "one.csv")]) == 0
+    _, columns = rows_of((tmp_path / "one.csv").read_text())
+    one = ds.x_m.sel(record=2, beta=0.3, dof=2).values.ravel()
+    np.testing.assert_array_equal(numbers(columns["x_2_m"]), one[: len(columns["x_2_m"])])
+
+
+def test_the_masses_of_a_map_are_columns():
+    solver = fm.Solver(outputs=["regime", "amplitude", "also_reachable"])
+    ds = fm.sweep(CHAIN, [0.5, 0.9], [0.1, 0.4], units=UNITS, solver=solver)
+    head, columns = rows_of(csv_of(ds))
+    assert head[:5] == ["mu", "r", "beta", "frequency_Hz", "friction_force_N"]
+    assert len(columns["r"]) == 4
+    for k in (1, 2):
+        wanted = ds.amplitude_m.sel(dof=k).transpose("mu", "r", "beta").values.ravel()
+        np.testing.assert_array_equal(numbers(columns[f"amplitude_{k}_m"]), wanted)
+    codes = {"permanent_sticking": 1, "stick_slip": 2, "continuous": 4}
+    masks = [sum(codes[name] for name in text.split(" | ") if name) for text in columns["also_reachable"]]
+    assert masks == ds.also_reachable.transpose("mu", "r", "beta").values.ravel().tolist()
+
+
+def test_shares_and_boundaries_have_a_row_per_cell_and_per_frequency():
+    ds = fm.sweep(fm.System(), [0.5, 0.9], [0.1, 0.4], axes={"damping_ratios": [0.01, 0.05]}, units=UNITS)
+    head, columns = rows_of(csv_of(fm.shares(ds, "damping_ratios")))
+    assert len(columns["r"]) == 4
+    assert {"frequency_Hz", "friction_force_N", "regime_share_continuous"} <= set(head)
+    middle = ds.beta_lim_N.mean("damping_ratios").values.repeat(2)  # between two values
+    np.testing.assert_allclose(numbers(columns["beta_lim_quantile_0.5_N"]), middle, rtol=1e-12)
+    head, columns = rows_of(csv_of(ds))  # with its further axis
+    assert head[:4] == ["damping_ratios", "mu", "r", "beta"]
+    assert len(columns["r"]) == 8
+    head, columns = rows_of(csv_of(fm.boundaries(fm.System(), [0.5, 0.9], units=UNITS)))
+    assert len(columns["r"]) == 2
+    assert {"frequency_Hz", "beta_lim_N", "beta_stick_N"} <= set(head)
 
 
 def test_a_map_of_two_contacts_has_a_column_for_each(tmp_path):

@@ -453,7 +453,8 @@ def test_the_command_writes_what_the_function_returns(rig, tmp_path, monkeypatch
     assert "r = 1 is 4.2 Hz, beta = 1 is 12.5 N, an amplitude of 1 is 4.16667 mm" in capsys.readouterr().out
     assert main(["export", "map.nc", "--quiet", "-o", "map.csv"]) == 0
     head = (tmp_path / "map.csv").read_text().splitlines()[0].split(",")
-    assert {"frequency", "friction_force", "contact_amplitude_m", "beta_lim_N"} < set(head)
+    assert {"frequency_Hz", "friction_force_N", "contact_amplitude_m", "beta_lim_N"} < set(head)
+    assert not {"contact_amplitude", "beta_lim"} & set(head)
 
 
 def test_a_response_is_asked_for_in_hertz(rig, tmp_path, monkeypatch, capsys):

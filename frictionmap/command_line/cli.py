@@ -382,6 +382,11 @@ def _export_page(options: Options, scene: "Scene | Motions") -> None:
             "cannot use --export with a configuration of motions in time: their page needs the program; use "
             f"frictionmap history {options.config}, and frictionmap plot"
         )
+    if scene.unloaded:
+        raise InputError(
+            "cannot use --export over grid.wall_speed: saved pages are of maps under loads; use frictionmap "
+            f"map {options.config}, and frictionmap plot"
+        )
     check_page(options.output)
     page = StoredPage(scene, _keys_of(options.sliders))
     with claimed(options.output, options.overwrite, scene.files) as output:

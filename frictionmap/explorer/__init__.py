@@ -9,14 +9,17 @@ law_numbers        numbers of friction over speed that a slider changes
 sliders            numbers of a system that can be changed
 scene              subject of a page: system, initial view, parameters that can be changed
 views              one view: changed system, ranges of r and beta, mu
+belt_classes       motions on a belt without a load: classes of cells, and quantities that colour them
 quantities         what the cells of a map show: classes of their regime, or a quantity
 queries            queries of the page, checked like a configuration
+unloaded           maps on a belt without a load: cells, and limits as lines
 lines              boundaries of a view: values, and how the page draws them
 pieces             pieces of a map for the page: cells, classes, quantities, boundaries
 example            cell whose motion the page opens with
 drawing            drawing of a system in motion: masses, springs, contacts, loads
 numbers            numbers of a cell, as the page lists them
 sentences          a motion in sentences: what the contacts do, and why
+unloaded_motion    one motion on a belt without a load: numbers, words, curves
 cell               one cell: its motion, and that from another initial state
 cut                response curves through a view
 subjects           responses that a goal can be about

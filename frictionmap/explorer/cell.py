@@ -12,16 +12,13 @@ from ..model.general import refuse_general
 from ..model.settings import Start
 from ..pictures.classes import of_cells
 from ..pictures.palette import UNRESOLVED
-from .drawing import drawing_curves, drawing_of, mass_names, vectors_of
+from .drawing import OPEN, drawing_curves, drawing_of, mass_names, vectors_of
 from .lines import values_of_lines
 from .numbers import listed_contacts, numbers_of
 from .quantities import counted_of
 from .queries import PAGE, Query, needed
 from .sentences import describe_motion
 from .views import Follower, View
-
-#: State of an open contact, beside its directions.
-_OPEN = 2
 
 #: Samples per excitation period: a curve a few hundred pixels wide is smooth with them.
 _SAMPLES = 400
@@ -39,11 +36,10 @@ def read(query: Query) -> tuple[float, float]:
     """r and beta of a cell."""
     parts = needed(query.given, "at").split(",")
     if len(parts) != 2:
-        raise InputError(
-            f"at must be r and beta separated by a comma; got {checks.one_line(query.given['at'])}"
-        )
+        got = checks.one_line(query.given["at"])
+        raise InputError(f"at must be {query.view.across.key} and beta separated by a comma; got {got}")
     r, beta = query.cell(*parts)
-    r = checks.number(r, "r", above=0.0, most=checks.LARGEST_RATIO)
+    r = checks.number(r, query.view.across.key, above=0.0, most=checks.LARGEST_RATIO)
     return r, checks.number(beta, "beta", least=0.0)
 
 
@@ -59,6 +55,10 @@ def motion(view: View, r: float, beta: float, follower: Follower) -> Packet:
 
     Where there is no steady state, the header says why under `none`, and there are no arrays.
     """
+    if view.unloaded:
+        from . import unloaded_motion
+
+        return unloaded_motion.motion(view, r, beta, follower)
     view.check(r)
     if view.system.varies:
         view = replace(view, system=view.system.at_frequency(r))
@@ -115,7 +115,7 @@ def curves_of(view: View, values: Mapping[str, np.ndarray]) -> dict[str, np.ndar
     return {
         **{name: table.astype(np.float32) for name, table in drawn.items()},
         **drawing_curves(system, tau, k),
-        "states": np.where(values.get("open", np.zeros_like(direction)) == 1, _OPEN, direction).astype(
+        "states": np.where(values.get("open", np.zeros_like(direction)) == 1, OPEN, direction).astype(
             np.int8
         ),
         "direction": np.ascontiguousarray(direction if k is None else direction[k]).astype(np.int8),

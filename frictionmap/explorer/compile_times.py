@@ -53,6 +53,11 @@ _BENCHMARK = {
         "quantity": Compilation(1.0, 2),
         "goal": Compilation(26.0, 145),
     },
+    "belt": {
+        "lines": Compilation(3.0, 20),
+        "map": Compilation(6.0, 40),
+        "motion": Compilation(25.0, 100),
+    },
     "general": {
         "lines": Compilation(16.0, 135),
         "map": Compilation(18.0, 139),
@@ -76,9 +81,9 @@ _PARTLY = 0.5
 _NAME = "compile-times.json"
 
 
-def group_of(work: str, system: System) -> str:
+def group_of(work: str, system: System, *, unloaded: bool = False) -> str:
     """Name of the kernels that a kind of work needs for a system, such as "map one"."""
-    return f"{work} {engine_of(system).kernels}"
+    return f"{work} {'belt' if unloaded else engine_of(system).kernels}"
 
 
 def default_place() -> Path | None:

@@ -12,6 +12,7 @@ from ..files.config import config_of, parse, read_system
 from ..files.export import write_export
 from ..model.matrices import Matrices
 from ..model.settings import Output, Solver
+from ..no_load.sweep import belt_map
 from ..steady.sweep import swept
 from ..units.scales import scales_of
 from .quantities import CellQuantity
@@ -32,6 +33,10 @@ _CODES = ("regime", "stops_per_cycle")
 _PER_NUMBER, _PER_FLOAT, _PER_FILE = 12.0, 5.0, 60e3
 
 
+#: Numbers of a cell without a load, about.
+_OF_BELTS = 25
+
+
 def _solver(view: View, quantity: CellQuantity) -> Solver:
     wanted = dict.fromkeys((*_ALWAYS, *filter(None, (quantity.output,))))
     return replace(view.solver, outputs=cast(tuple[Output, ...], tuple(wanted)))
@@ -40,7 +45,9 @@ def _solver(view: View, quantity: CellQuantity) -> Solver:
 def _described(scene: Scene, view: View, quantity: CellQuantity, piece: Piece) -> str:
     """Configuration of a view; matrices too large for text become a comment."""
     axes = view.axes(piece.columns, piece.rows)
-    of_grid = {name: axes[name] for name in ("r", "beta", "mu")}
+    of_grid = {view.across.key: axes["r"], "beta": axes["beta"], "mu": axes["mu"]}
+    if view.unloaded:
+        return configuration(scene.title, view.system, of_grid, units=scene.units)
     return configuration(scene.title, view.system, of_grid, _solver(view, quantity), units=scene.units)
 
 
@@ -56,8 +63,10 @@ def configuration_text(scene: Scene, view: View, quantity: CellQuantity, piece: 
     if _is_large(view):
         return _with_files(scene, view, text)
     loaded = config_of(text, {})
-    again = {"r": loaded.r, "beta": loaded.beta, "mu": loaded.mu}
-    found = configuration(scene.title, loaded.system, again, loaded.solver, units=loaded.units)
+    across = loaded.r if loaded.wall_speed is None else loaded.wall_speed
+    again = {view.across.key: across, "beta": loaded.beta, "mu": loaded.mu}
+    solver = None if view.unloaded else loaded.solver
+    found = configuration(scene.title, loaded.system, again, solver, units=loaded.units)
     if _uncommented(found) != _uncommented(text):
         raise InputError(
             "cannot save this view: no configuration reproduces it exactly; save its cells instead"
@@ -99,6 +108,9 @@ def _with_files(scene: Scene, view: View, text: str) -> str:
 def sizes(scene: Scene, view: View, quantity: CellQuantity, piece: Piece) -> dict[str, float]:
     """Estimate the bytes of the files of `saved_map` by format; fewer where many cells stick."""
     scales = scales_of(scene.units, view.system)
+    if view.unloaded:
+        cells = piece.columns * piece.rows
+        return {"csv": _PER_NUMBER * _OF_BELTS * cells, "nc": _PER_FILE + _PER_FLOAT * _OF_BELTS * cells}
     outputs = _solver(view, quantity).outputs
     masses = view.system.n if "amplitude" in outputs else 1
     contacts = view.system.contact_system.count
@@ -126,8 +138,12 @@ def saved_map(
     """The map of a view as a file: `ending` is .nc or .csv."""
     axes = view.axes(piece.columns, piece.rows)
     given = axes["r"], axes["beta"], axes["mu"]
-    ds = swept(view.system, given, _solver(view, quantity), None, None, follower.progress, scene.units,
-               follower.watch)  # fmt: skip
+    if view.unloaded:
+        mu, speed, beta = axes["mu"], axes["r"], axes["beta"]
+        ds = belt_map(view.system, speed, beta, mu, scene.units, None, follower.progress)
+    else:
+        ds = swept(view.system, given, _solver(view, quantity), None, None, follower.progress, scene.units,
+                   follower.watch)  # fmt: skip
     ds.attrs |= {"title": scene.title, "config": _described(scene, view, quantity, piece)}
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"map{ending}"

@@ -11,6 +11,9 @@ from ..structures.dofs import POINT
 #: Masses, springs and contacts that are drawn at most.
 _MASSES, _SPRINGS, _CONTACTS = 8, 12, 12
 
+#: State of an open contact, beside its directions.
+OPEN = 2
+
 #: Springs that are weaker than this, relative to the stiffness of their masses, are rounding errors.
 _WEAK = 1e-9
 

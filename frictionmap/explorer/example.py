@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..pictures.palette import CONTINUOUS, MORE, ONE, ONE_WAY, UNCOUNTED
+from .belt_classes import EXAMPLES
 from .pieces import classes_of, solve_piece
 from .quantities import quantities_of
 from .views import Follower, Piece, View
@@ -20,12 +21,17 @@ def example_cell(view: View, follower: Follower) -> tuple[float, float] | None:
     Motions with an integer number of stops per cycle come first: they repeat.
     """
     columns, rows = _CELLS[not view.is_quick]
-    found = solve_piece(view, quantities_of(view)[:1], Piece(columns, rows, 0, columns), follower)
-    _, arrays = classes_of(found, ())
+    piece = Piece(columns, rows, 0, columns)
+    if view.unloaded:
+        from . import unloaded
+
+        classes = unloaded.solve(view, piece, follower)["classes"]
+    else:
+        classes = classes_of(solve_piece(view, quantities_of(view)[:1], piece, follower), ())[1]["classes"]
     axes = view.axes(columns, rows)
-    kinds = (range(ONE, MORE + 1), (UNCOUNTED,), (CONTINUOUS, ONE_WAY))
-    for kind in kinds:
-        place = largest_square(arrays["classes"], kind)
+    own = (range(ONE, MORE + 1), (UNCOUNTED,), (CONTINUOUS, ONE_WAY))
+    for kind in EXAMPLES if view.unloaded else own:
+        place = largest_square(classes, kind)
         if place is not None:
             r, beta = (
                 float(f"{axes[name][k]:.{_DIGITS}g}") for name, k in zip(("r", "beta"), place, strict=True)

@@ -11,6 +11,10 @@ _DASHED, _DOTTED = (7, 4), (2, 3)
 
 def lines_of(view: View) -> tuple[Line, ...]:
     """The boundaries that a view has."""
+    if view.unloaded:
+        from . import unloaded
+
+        return unloaded.lines_of(view)
     elastic, k = view.system.contact_system.elastic, view.shown
     held = ", the others held" if elastic.size > 1 else ""
     if view.system.contact_system.has_phases:
@@ -64,9 +68,10 @@ def line_names(view: View) -> tuple[str, ...]:
     return tuple(name for line in lines_of(view) for name in line.names)
 
 
-def line_values(view: View, r: np.ndarray) -> dict[str, np.ndarray]:
-    """The curves of a view over r."""
-    return values_of_lines(view, view.engine.limits(r, np.array([view.mu])))
+def line_values(view: View, r: np.ndarray, *, known: bool = False) -> dict[str, np.ndarray]:
+    """The curves of a view over r; `known`: those that take no search, NaN in the place of others."""
+    limits = view.engine.known_limits if known else view.engine.limits
+    return values_of_lines(view, limits(r, np.array([view.mu])))
 
 
 def values_of_lines(view: View, limits: Limits) -> dict[str, np.ndarray]:

@@ -76,6 +76,7 @@ def explore(
     title: str | None = None,
     port: int | None = None,
     record: "Record | Sequence[Record] | None" = None,
+    wall_speed: ArrayLike | None = None,
 ) -> Explorer:
     """Show an interactive map of a system, or its motions in time under records, in a browser or notebook.
 
@@ -102,6 +103,9 @@ def explore(
     record : Record or sequence of Record, optional
         The page then shows motions in time under these records.  `beta` is the friction that it begins with,
         as of `history`, default 1; r is not used.
+    wall_speed : array_like, optional
+        In the place of r, for a system on a belt without a load: the range of belt speeds over omega_1 P/k1
+        [-] that the page begins with; with units also texts such as ``("0.1 m/s", "0.5 m/s")``.
 
     Returns
     -------
@@ -126,8 +130,15 @@ def explore(
         for name, given, own in (("r", r, _R), ("start", start, "rest")):
             if given is not own and given != own:
                 raise InputError("cannot use", name, "with record: it is of maps; omit it")
+        if wall_speed is not None:
+            raise InputError("cannot use", "wall_speed", "with record: it is of maps; omit it")
         return Explorer(open_server(motions, _port(port)))
-    scene = scene_of_system(system, r, beta, mu, start, title or "Regimes of motion", units)
+    if wall_speed is not None:
+        if r is not _R:
+            raise InputError("cannot use", "r", "with wall_speed: there is no load; omit one of them")
+        r = wall_speed
+    arguments = (system, r, beta, mu, start, title or "Regimes of motion", units)
+    scene = scene_of_system(*arguments, unloaded=wall_speed is not None)
     return Explorer(open_server(scene, _port(port)))
 
 

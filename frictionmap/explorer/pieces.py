@@ -80,6 +80,10 @@ def piece_of_map(
 
     lines : points of the boundaries over the whole view, finer than coarse cells: `line_lim` ...
     """
+    if view.unloaded:
+        from . import unloaded
+
+        return unloaded.piece_of_map(view, quantity, piece, follower, lines)
     began = time.perf_counter()
     found = solve_piece(view, [quantity], piece, follower)
     seconds = time.perf_counter() - began
@@ -91,9 +95,13 @@ def piece_of_map(
     return {"first": piece.first, "last": piece.last, "seconds": seconds, **header}, arrays
 
 
-def packet_of_lines(view: View, count: int) -> dict[str, np.ndarray]:
-    """The boundaries over the complete view at this number of points: `line_lim` ..."""
-    values = line_values(view, middles(view.r, count, "lines"))
+def packet_of_lines(view: View, count: int, *, known: bool = False) -> dict[str, np.ndarray]:
+    """The boundaries over the complete view at this number of points: `line_lim` ...; see `line_values`."""
+    if view.unloaded:
+        from . import unloaded
+
+        return unloaded.packet_of_lines(view, count)
+    values = line_values(view, middles(view.r, count, "lines"), known=known)
     return {f"line_{name.removeprefix('beta_')}": line for name, line in values.items()}
 
 

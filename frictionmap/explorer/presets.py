@@ -43,6 +43,23 @@ r = ["0.5 Hz", "5 Hz"]
 beta = ["0 kN", "160 kN"]
 """
 
+_BRAKE_PAD = """\
+title = "Brake pad on its disc"
+[units]
+load = "160 N"
+[system]
+masses = ["0.5 kg"]
+springs = ["500 N/mm"]
+damping_ratios = 0.02
+[[system.contacts]]
+kind = "fixed-wall"
+masses = [1]
+law = { formula = "exponential", kinetic = 0.75, speed = "0.1 m/s", error = 0.005 }
+[grid]
+wall_speed = ["5 mm/s", "600 mm/s"]
+beta = ["4 N", "240 N"]
+"""
+
 PRESETS = {
     "fixed-wall": Preset(
         "one mass on a fixed wall",
@@ -72,6 +89,7 @@ PRESETS = {
         'title = "Mass on a belt"\n[system]\ndamping_ratios = 0.02\nwall_velocity = 0.5\n'
         "[grid]\nr = [0.1, 2.0]\nbeta = [0.0, 1.2]\n",
     ),
+    "brake-pad": Preset("brake pad on its disc, no load", _BRAKE_PAD),
 }
 
 

@@ -1,11 +1,11 @@
 """What the cells of a map show: classes of their regime, or a quantity."""
 
-from typing import NamedTuple
-
 from ..model.system import System
 from ..pictures.classes import OVERALL, OVERALL_ELASTIC, SLIPS, STOPS, Counted
 from ..pictures.palette import CLASSES, ONE_WAY, ONE_WAY_LABEL, Look
 from ..structures.dofs import POINT
+from .belt_classes import LOOKS, belt_quantities
+from .scene_parts import CellQuantity
 from .views import View
 
 #: Masses whose amplitudes are offered one by one.
@@ -13,17 +13,6 @@ _OFFERED_MASSES = 12
 
 #: Colour of one-way sliding: pale, as it has no stops either; pictures on paper hatch it.
 _ONE_WAY = "#d5ecc8"
-
-
-class CellQuantity(NamedTuple):
-    """A quantity that colours the cells of a map."""
-
-    key: str
-    label: str
-    output: str  # of a map; "" for the classes of regimes and stops
-    scale: str  # of the colours: "classes", "linear" or "log"
-    row: int | None = None  # of the mass that is meant, counted from 0
-
 
 #: Outputs of a contact, or of all contacts together, with their labels and the scales of their colours: of
 #: displacements in it; of rigid and of elastic ones; of all.
@@ -55,6 +44,8 @@ _WORK = "work_friction"
 
 def quantities_of(view: View) -> tuple[CellQuantity, ...]:
     """Quantities that can colour the cells: of the contact that is shown, or of all together."""
+    if view.unloaded:
+        return belt_quantities(view, amplitudes(view.system, "peak to peak of", "peak_to_peak"))
     together, elastic = view.shown is None, view.is_elastic
     first = "regime of all contacts" if together else f"regime and {counted_of(view).events}"
     work = "energy dissipated by all contacts" if together else "energy dissipated by friction"
@@ -68,16 +59,16 @@ def quantities_of(view: View) -> tuple[CellQuantity, ...]:
 
     return (
         CellQuantity("regime", first, "", "classes"),
-        *known(() if together else _DISPLACEMENTS), *_amplitudes(view.system), *known(rows),
+        *known(() if together else _DISPLACEMENTS), *amplitudes(view.system), *known(rows),
     )  # fmt: skip
 
 
-def _amplitudes(system: System) -> list[CellQuantity]:
-    """Amplitudes of the masses."""
+def amplitudes(system: System, what: str = "amplitude of", output: str = "amplitude") -> list[CellQuantity]:
+    """Amplitudes of the masses, or what else is known of each."""
     numbers = system.dofs.numbers[:_OFFERED_MASSES]
-    labels = [f"amplitude of {name_of_mass(system, number)}" for number in numbers]
+    labels = [f"{what} {name_of_mass(system, number)}" for number in numbers]
     return [
-        CellQuantity(f"amplitude_{number}", label, "amplitude", "log", row)
+        CellQuantity(f"{output}_{number}", label, output, "log", row)
         for row, (number, label) in enumerate(zip(numbers, labels, strict=True))
     ]
 
@@ -98,6 +89,8 @@ def counted_of(view: View) -> Counted:
 
 def looks_of(view: View) -> tuple[Look, ...]:
     """Names and colours of the classes, with that of one-way sliding where there are belts."""
+    if view.unloaded:
+        return LOOKS
     labels = counted_of(view).labels
     looks = tuple(look._replace(label=label) for look, label in zip(CLASSES, labels, strict=False))
     if not any(one.first.belt for one in view.system.contact_system.groups):

@@ -14,7 +14,7 @@ from ..units.scales import Scales, Units, rounded, scales_of
 from .contacts import shown_contact
 from .quantities import CellQuantity, quantities_of
 from .scene import Scene, checked_range
-from .scene_parts import Slider
+from .scene_parts import BELT_SPEED, FREQUENCY, Slider
 from .views import MOST_PIXELS, Piece, View
 
 #: Keys of a query: 64 contacts have some numbers each.
@@ -23,7 +23,7 @@ _MOST_KEYS = 500
 #: Points of a cut.
 _MOST_POINTS = 8192
 
-_VIEW = ("r", "beta", "mu", "start", "contact")
+_VIEW = ("beta", "mu", "start", "contact")
 
 
 class Query(NamedTuple):
@@ -44,11 +44,11 @@ class Query(NamedTuple):
 
     def cell(self, r: str, beta: str) -> tuple[float, float]:
         """Convert frequency and friction of a cell to ratios; one message names all that lack a reference."""
-        given = {"r": r, "beta": beta}
+        across = self.view.across
+        given = {across.key: (across.measure, r), "beta": (KINDS["beta"], beta)}
         if has_units([r, beta]):
-            of_both = {name: (KINDS[name], text) for name, text in given.items()}
-            require(scales_of(self.units, self.view.system), **of_both)
-        at_r, at_beta = (self.ratio(text, name, KINDS[name]) for name, text in given.items())
+            require(scales_of(self.units, self.view.system), **given)
+        at_r, at_beta = (self.ratio(text, name, kind) for name, (kind, text) in given.items())
         return at_r, at_beta
 
 
@@ -68,7 +68,8 @@ def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
         A key is unknown or given twice, or a value is invalid.
     """
     numbers = {slider.key: slider for slider in scene.sliders if slider.key != "mu"}
-    given = read_keys(text, (*_VIEW, *numbers, *further))
+    across = BELT_SPEED if scene.unloaded else FREQUENCY
+    given = read_keys(text, (across.key, *_VIEW, *numbers, *further))
     start = given.get("start", scene.solver.start)
     checks.choice(start, "start", get_args(Start))
     contact = given.get("contact", "")
@@ -81,11 +82,12 @@ def read_query(scene: Scene, text: str, further: Sequence[str] = ()) -> Query:
     )
     view = View(
         system=scene.changed(contact, changes),
-        r=_range(given, "r", scene.r, scales),
-        beta=_range(given, "beta", scene.beta, scales),
+        r=_range(given, across.key, scene.r, across.measure, scales),
+        beta=_range(given, "beta", scene.beta, KINDS["beta"], scales),
         mu=checks.number(number(given["mu"], "mu"), "mu", least=1.0) if "mu" in given else scene.mu,
         solver=replace(scene.solver, start=start),  # type: ignore[arg-type]
         contact=shown_contact(contact),
+        unloaded=scene.unloaded,
     )
     return Query(view, given, scene.units, dict(changes))
 
@@ -169,8 +171,9 @@ def needed(given: Mapping[str, str], name: str) -> str:
 
 
 def _range(
-    given: Mapping[str, str], name: str, default: tuple[float, float], scales: Callable[[], Scales]
-) -> tuple[float, float]:
+    given: Mapping[str, str], name: str, default: tuple[float, float], kind: str,
+    scales: Callable[[], Scales],
+) -> tuple[float, float]:  # fmt: skip
     if name not in given:
         return default
     parts = given[name].split(",")
@@ -178,12 +181,12 @@ def _range(
         raise InputError(
             f"{name} must be two numbers separated by a comma; got {checks.one_line(given[name])}"
         )
-    return checked_range(_ratios(parts, name, KINDS[name], scales), name)
+    return checked_range(_ratios(parts, name, kind, scales), name)
 
 
 #: Keys of a page, of boundaries, and of a piece of a map.
 PAGE = ("page", "turn")
-LINES = ("count", *PAGE)
+LINES = ("count", "known", *PAGE)
 PIECE = ("columns", "rows", "first", "last", "lines", "quantity", *PAGE)
 
 

@@ -26,7 +26,7 @@ def _frictions(view: View) -> tuple[float, ...]:
 
     Where closed forms say so, one of each regime, that between the boundaries first.
     """
-    if not view.engine.has_closed_limits:
+    if view.unloaded or not view.engine.has_closed_limits:
         return (0.5 * sum(view.beta),)
     limits = lines.line_values(replace(view, mu=1.0), np.array([_place(view)]))
     lim, stick = limits["beta_lim"].item(), limits["beta_stick"].item()
@@ -36,14 +36,14 @@ def _frictions(view: View) -> tuple[float, ...]:
 
 
 def _lines(view: View, follower: Follower) -> None:
-    lines.line_values(view, np.array([_place(view)]))
+    pieces.packet_of_lines(view, 2)
 
 
 def _map(view: View, follower: Follower) -> None:
     """Cells over the whole map, and some that closed forms do not decide."""
     regimes = quantities_of(view)[0]
     pieces.piece_of_map(view, regimes, Piece(2, 2, 0, 2), follower)
-    if view.engine.has_closed_limits:
+    if not view.unloaded and view.engine.has_closed_limits:
         r, beta = _place(view), _frictions(view)[0]
         narrow = replace(view, r=(r, 1.001 * r), beta=(beta, 1.001 * beta))
         pieces.piece_of_map(narrow, regimes, Piece(2, 2, 0, 2), follower)
@@ -56,18 +56,22 @@ def _motion(view: View, follower: Follower) -> None:
 
 
 def _others(view: View, follower: Follower) -> None:
-    if view.engine.compares_starts:
+    if not view.unloaded and view.engine.compares_starts:
         cell.others(replace(view, mu=1.0), _place(view), _frictions(view)[0], follower)
 
 
 def _cut(view: View, follower: Follower) -> None:
     """Response curves of two points; along r they need kernels that curves along beta do not need."""
+    if view.unloaded:
+        return
     r = _place(view)
     narrow = replace(view, mu=1.0, r=(r, 1.01 * r))
     cut.cut(narrow, "r", 0.5 * sum(view.beta), 2, follower)
 
 
 def _quantity(view: View, follower: Follower) -> None:
+    if view.unloaded:  # one computation finds all of them
+        return
     outputs = {quantity.output: quantity for quantity in quantities_of(view)[1:]}
     for quantity in outputs.values():
         pieces.piece_of_map(replace(view, mu=1.0), quantity, Piece(2, 2, 0, 2), follower)

@@ -16,10 +16,10 @@ from ..model.system import System
 from ..model.variations import named_number
 from ..units.axes import KINDS, ratios, require
 from ..units.scales import Units, scales_of
-from .contacts import contacts_of, put_contact
+from .contacts import contacts_of, is_placed, put_contact
 from .law_numbers import is_of_law, put_law_number
-from .scene_parts import Contact, Slider
-from .sliders import sliders_of
+from .scene_parts import BELT_SPEED, FREQUENCY, Contact, Slider
+from .sliders import is_of_belt, sliders_of
 
 if TYPE_CHECKING:
     from ..files.config import Config
@@ -40,6 +40,7 @@ class Scene:
     solver: Solver
     config: "Config | None" = None
     units: Units | None = None
+    unloaded: bool = False  # on a belt, without a load: `r` is the range of belt speeds
 
     def __post_init__(self) -> None:
         refuse_banks(self.system, "show a page")
@@ -48,6 +49,10 @@ class Scene:
                 "cannot show a page of a system without contacts: its maps are over the friction in them; "
                 "use frictionmap curves"
             )
+        if self.unloaded:
+            from ..no_load.sweep import checked  # xarray takes long to import, and other pages need none
+
+            checked(self.system, self.r[1], self.beta, self.mu, self.units)
         object.__setattr__(self, "changed", lru_cache(_KEPT)(self._changed))
 
     @property
@@ -58,12 +63,14 @@ class Scene:
     @property
     def sliders(self) -> tuple[Slider, ...]:
         """Numbers that can be changed by sliders."""
-        return sliders_of(self.system, self.mu)
+        found = sliders_of(self.system, self.mu)
+        return found if not self.unloaded else tuple(one for one in found if not is_of_belt(one.key))
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
         """Contacts to choose from, that of the system first."""
-        return contacts_of(self.system)
+        found = contacts_of(self.system)
+        return found[:1] if self.unloaded and is_placed(self.system) else found
 
     def _changed(self, contact: str, numbers: tuple[tuple[str, float], ...]) -> System:
         """Change the contact and numbers of the system; contact "": unchanged.
@@ -95,11 +102,13 @@ def _ends(values: Any) -> tuple[float, float]:
 
 def scene_of(config: "Config") -> Scene:
     """Make the scene of a configuration, with the first point of further axes and the first mu."""
-    config.refuse_belt("open a page")
-    system = config.system
+    system, mu = config.system, float(config.mu[0])
+    if config.wall_speed is not None:
+        ends = (_ends(config.wall_speed), _ends(config.beta))
+        return Scene(config.title, system, *ends, mu, config.solver, config, config.units, unloaded=True)
     if config.variations is not None:
         system = config.variations.at([0] * len(config.variations.axes))
-    ends, mu = (_ends(config.r), _ends(config.beta)), float(config.mu[0])
+    ends = (_ends(config.r), _ends(config.beta))
     return Scene(config.title, system, *ends, mu, config.solver, config, config.units)
 
 
@@ -113,8 +122,9 @@ def checked_range(values: object, name: str) -> tuple[float, float]:
 
 
 def scene_of_system(
-    system: System, r: object, beta: object, mu: object, start: object, title: object, units: Units | None
-) -> Scene:
+    system: System, r: object, beta: object, mu: object, start: object, title: object, units: Units | None,
+    *, unloaded: bool = False,
+) -> Scene:  # fmt: skip
     """Make the scene of a system, from checked arguments."""
     checks.instance(system, "system", System)
     if not isinstance(title, str):
@@ -123,10 +133,10 @@ def scene_of_system(
     mu = checks.number(mu, "mu", least=1.0)
     scales = scales_of(units, system)  # they may not go with it
     settings: Mapping[str, Any] = {"start": start}
-    require(scales, r=(KINDS["r"], r), beta=(KINDS["beta"], beta))
-    ends = (
-        checked_range(ratios(r, "r", KINDS["r"], scales), "r"),
-        checked_range(ratios(beta, "beta", KINDS["beta"], scales), "beta"),
-    )
-    system.costs(np.array(ends[0]))
-    return Scene(title, system, *ends, mu, Solver(**settings), units=units)
+    across = BELT_SPEED if unloaded else FREQUENCY
+    kinds = {across.key: (across.measure, r), "beta": (KINDS["beta"], beta)}
+    require(scales, **kinds)
+    ends = [checked_range(ratios(one, name, kind, scales), name) for name, (kind, one) in kinds.items()]
+    if not unloaded:
+        system.costs(np.array(ends[0]))
+    return Scene(title, system, ends[0], ends[1], mu, Solver(**settings), units=units, unloaded=unloaded)

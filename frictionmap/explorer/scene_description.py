@@ -37,7 +37,9 @@ def _physical(scene: Scene, view: View) -> dict[str, dict[str, Any]]:
         scales = scales_of(scene.units, view.system)
     except InputError:  # a contact was chosen that the units do not go with
         return {}
-    largest = {"frequency": scene.r[1], "force": scene.beta[1], "length": 1.0, "work": 1.0}
+    largest = {view.across.measure: scene.r[1], "force": scene.beta[1], "length": 1.0, "work": 1.0}
+    if scene.unloaded:
+        largest["frequency"] = 1.0
     found = {}
     for measure, most in largest.items():
         one = scales.of(measure)
@@ -54,9 +56,17 @@ def _costs(view: View) -> list[str]:
     return [*costs.values(), *boundary_check(view.system, some, np.array([view.mu])).values()]
 
 
+def _describe_system(view: View) -> str:
+    """The system in words, and how it differs from the given one."""
+    if view.unloaded:
+        return view.system.describe_unloaded()
+    return "; ".join((view.system.describe(), *_costs(view)))
+
+
 def units_of(scene: Scene, view: View) -> dict[str, Any]:
     """Units of the results of a view: `units`, the reference of each ratio; `physical`, their SI units."""
-    return {"units": _UNITS[str(view.system.excitation)], "physical": _physical(scene, view)}
+    units = _UNITS[str(view.system.excitation)]
+    return {"units": units, "physical": _physical(scene, view), "across": view.across._asdict()}
 
 
 def description(scene: Scene, view: View) -> dict[str, Any]:
@@ -66,9 +76,9 @@ def description(scene: Scene, view: View) -> dict[str, Any]:
     """
     system = view.system
     return {
-        "system": "; ".join((system.describe(), *_costs(view))),
+        "system": _describe_system(view),
         "quantities": offered_quantities(view),
-        "marks": marks(system),
+        "marks": {} if view.unloaded else marks(system),
         "subjects": describe_subjects(system),
         "lines": [line._asdict() for line in lines_of(view)],
         **_classes(view),
@@ -80,7 +90,8 @@ def _classes(view: View) -> dict[str, Any]:
     """Names and colours of the classes, what they count, and the contact that they are of."""
     name = "" if view.contact is None else view.contacts[0].name
     looks = [look._asdict() for look in looks_of(view)]
-    return {"classes": looks, "events": counted_of(view).events, "contact": name}
+    events = "stops" if view.unloaded else counted_of(view).events
+    return {"classes": looks, "events": events, "contact": name}
 
 
 def _contacts(scene: Scene, view: View) -> list[dict[str, Any]]:
@@ -99,6 +110,15 @@ def offered_quantities(view: View) -> list[dict[str, str]]:
     return [{"key": one.key, "label": one.label, "scale": one.scale} for one in quantities_of(view)]
 
 
+def _drawing(view: View) -> dict[str, Any]:
+    """The drawing of the system at rest."""
+    if view.unloaded:
+        from .unloaded_motion import drawing_on_belt
+
+        return drawing_on_belt(view, 0.5 * sum(view.r))
+    return drawing_of(view.system, view.shown)
+
+
 def describe_scene(scene: Scene, view: View) -> dict[str, Any]:
     """Describe the scene, with the system as changed in a view."""
     return {
@@ -113,8 +133,9 @@ def describe_scene(scene: Scene, view: View) -> dict[str, Any]:
         "contacts": _contacts(scene, view),
         "placed": is_placed(scene.system),
         "quick": view.is_quick,
-        "drawing": drawing_of(view.system, view.shown),
-        "goals": describe_goals(),
+        "drawing": _drawing(view),
+        "unloaded": view.unloaded,
+        "goals": [] if view.unloaded else describe_goals(),
         "presets": [{"key": key, "label": preset.label} for key, preset in PRESETS.items()],
         **{key: value for key, value in description(scene, view).items() if key != "contact"},
     }

@@ -32,6 +32,7 @@ from .scene import Scene
 if TYPE_CHECKING:
     from ..motions.configuration import Motions
     from .queries import Query
+    from .views import View
 
 #: Default port, if it is free, so that links to views remain valid.
 PORT = 8712
@@ -96,6 +97,10 @@ def page_files() -> dict[str, bytes]:
     }
 
 
+def _group(work: str, view: "View") -> str:
+    return group_of(work, view.system, unloaded=view.unloaded)
+
+
 def _text(status: int, message: object) -> Answer:
     return Answer(status, _TEXT, (" ".join(str(message).split()) + "\n").encode())
 
@@ -149,7 +154,7 @@ class Page:
             with contextlib.suppress(InputError):
                 view = queries.read_query(self.scene, "").view
                 try:
-                    with self.jobs.enter(REHEARSAL, group=group_of(work, view.system)) as job:
+                    with self.jobs.enter(REHEARSAL, group=_group(work, view)) as job:
                         job.watch()
                         stage(view, job)
                 except Outdated:
@@ -215,7 +220,7 @@ class Page:
         from .queries import page_of
 
         page, turn = page_of(query)
-        group = group_of(kernels or kind, query.view.system)
+        group = _group(kernels or kind, query.view)
         return self.jobs.enter(f"{kind} {page}" if page else f"{kind} {id(query)}", gone, turn, group)
 
     def _lines(self, text: str, gone: Callable[[], bool]) -> Answer:
@@ -225,10 +230,11 @@ class Page:
 
         query = queries.read_query(self.scene, text, queries.LINES)
         count = queries.points_of(query)
+        known = "known" in query.given
         query.view.check()
         with self._enter("lines", query, gone) as job:
             job.watch()
-            arrays = packet_of_lines(query.view, count)
+            arrays = packet_of_lines(query.view, count, known=known)
         return _packet(({"about": description(self.scene, query.view)}, arrays))
 
     def _example(self, text: str, gone: Callable[[], bool]) -> Answer:

@@ -20,6 +20,11 @@ def sliders_of(system: System, mu: float) -> tuple[Slider, ...]:
     return (*_mu(system, mu), *_damping(system), *_contacts(system), *_ratios(system))
 
 
+def is_of_belt(key: str) -> bool:
+    """Whether a slider is of the speed of a wall, which is an axis of a map without a load."""
+    return key.endswith(("wall_speed", "wall_velocity"))
+
+
 def _upward(
     key: str, label: str, ends: tuple[float, float], value: float, unit: str, scale: str = "linear",
     measure: str = "",

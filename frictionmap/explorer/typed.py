@@ -12,7 +12,7 @@ KEYS = tuple(dict.fromkeys((*cell.KEYS, *goal.KEYS, *PAGE)))
 def typed(query: Query) -> dict[str, Any]:
     """The numbers of a query as ratios, each with the name under which it was given."""
     view, given = query.view, query.given
-    found: dict[str, Any] = {"r": view.r, "beta": view.beta, "mu": view.mu, **query.numbers}
+    found: dict[str, Any] = {view.across.key: view.r, "beta": view.beta, "mu": view.mu, **query.numbers}
     if "at" in given:
         found["at"] = cell.read(query)
     if "band" in given:

@@ -12,6 +12,7 @@ from ..model.settings import Solver
 from ..model.system import System
 from ..solvers.choose import engine_of
 from ..solvers.interface import Engine
+from .scene_parts import BELT_SPEED, FREQUENCY, Across
 
 #: Pixels of a picture each way, and together: those of the largest screens.
 MOST_PIXELS, MOST_CELLS = 8192, 2**25
@@ -22,11 +23,17 @@ class View:
     """Ranges and system shown on a page."""
 
     system: System
-    r: tuple[float, float]
+    r: tuple[float, float]  # without a load the belt speeds
     beta: tuple[float, float]
     mu: float
     solver: Solver
     contact: int | None = None  # of a system with several, counted from 0; None: all together
+    unloaded: bool = False  # on a belt, without a load
+
+    @property
+    def across(self) -> Across:
+        """The axis that goes across."""
+        return BELT_SPEED if self.unloaded else FREQUENCY
 
     @property
     def engine(self) -> Engine:
@@ -52,10 +59,12 @@ class View:
     @property
     def is_quick(self) -> bool:
         """Whether its cells take microseconds: others take up to some hundred times as long."""
-        return self.engine.kernels == "one"
+        return not self.unloaded and self.engine.kernels == "one"
 
     def check(self, r: float | None = None) -> None:
         """Refuse a range, or a frequency, at which the error of a reduced structure exceeds its limit."""
+        if self.unloaded:  # its structure is not reduced for frequencies
+            return
         inside = r is None or self.r[0] <= r <= self.r[1]
         self.system.costs(np.array(self.r if inside else (r, r)))
 

@@ -10,9 +10,10 @@ from .._kernels.general.problem import Problem
 from ..jobs import Watch
 from ..model.settings import Start
 from ..model.system import System
+from .closed_limits import has_closed_limits
 from .held import belt_limit, least_static_friction, stick_scales
 from .loops import loop_stick_scales, refuse_further_loops
-from .no_stop import find_intervals, no_intervals
+from .no_stop import find_intervals, no_intervals, put_closed_limits
 from .problem import ModalSystem, general_of, is_symmetric
 
 #: Intervals without stops that are looked for in maps.
@@ -128,13 +129,14 @@ def _loop_boundaries(system: System, r: np.ndarray, mu: np.ndarray, intervals: i
 
 def find_boundaries(
     system: System, r: np.ndarray, mu: np.ndarray, threads: int | None = None, watch: Watch | None = None,
-    intervals: int = INTERVALS,
+    intervals: int = INTERVALS, searched: bool = True,
 ) -> Boundaries:  # fmt: skip
     """Find the boundaries over r; the intervals without stops take the longest.
 
     threads : number of threads; default: all processors of the process
     watch : called repeatedly; an exception raised by it ends the search
     intervals : number of intervals without stops that are looked for, from beta = 0 up
+    searched : whether intervals are searched that are no closed forms; else they are NaN
     """
     general = general_of(system)
     if general.loop:
@@ -144,11 +146,15 @@ def find_boundaries(
     stick = by_contact.max(axis=2)
     if general.elastic.any() or general.has_law:  # with a law the motion decides, see theory.md
         found = no_intervals((mu.size, r.size, intervals))
+    elif not searched:
+        found = no_intervals((mu.size, r.size, intervals))
+        if has_closed_limits(system):
+            put_closed_limits(system, r, mu, found)
     else:
         lines = friction_lines(system, mu)
         found = find_intervals(system, r, mu, lines, needed, intervals, checks.threads(threads), watch)
     first = np.where(found.begins[:, :, 0] == 0.0, found.ends[:, :, 0], 0.0)
-    if general.has_law:
+    if general.has_law or not (searched or has_closed_limits(system)):
         first = np.full_like(first, np.nan)
     return Boundaries(
         stick,

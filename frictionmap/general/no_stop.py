@@ -92,7 +92,7 @@ def friction_scales(
     return np.where(np.isfinite(rests) & (rests > 0.0), rests, found)
 
 
-def _put_closed_limits(system: System, r: np.ndarray, mu: np.ndarray, found: Intervals) -> np.ndarray:
+def put_closed_limits(system: System, r: np.ndarray, mu: np.ndarray, found: Intervals) -> np.ndarray:
     """Fill the first intervals in closed form; return their ends for mu = 1, (n_r,)."""
     one = closed_limits(system, r, np.append(mu, 1.0))
     found.begins[:, :, 0] = np.where(np.isnan(one.beta[:-1]), np.nan, 0.0)
@@ -120,7 +120,7 @@ def find_intervals(
     found = no_intervals((mu.size, r.size, intervals))
     known = np.full(r.size, np.nan)
     if has_closed_limits(system):
-        known = _put_closed_limits(system, r, mu, found)
+        known = put_closed_limits(system, r, mu, found)
         if intervals == 1:
             return found
     problem, modal = problem_of(system, r)

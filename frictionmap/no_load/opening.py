@@ -9,7 +9,7 @@ import xarray as xr
 
 from .. import checks, regimes
 from ..errors import InputError, NoSteadyState
-from ..jobs import Progress
+from ..jobs import Progress, Watch
 from ..model.system import System
 from ..phases.arrays import grid_of, modal
 from ..phases.dataset import OF_NORMAL, OF_SPRINGS, has_output, impact_comment
@@ -100,13 +100,13 @@ _NEEDED = (*_AS_THEY_ARE, *OF_NORMAL, *OF_SPRINGS, *(name for pair in _RANGES.va
 
 def opening_values(
     system: System, belts: Belts, axes: dict[str, np.ndarray], threads: int | None,
-    progress: Progress | None,
+    progress: Progress | None, watch: Watch | None,
 ) -> dict[str, np.ndarray]:  # fmt: skip
     """Variables of all cells."""
     given, sign = given_of(system, belts)
     found = sweep_free(
         given, sign * axes["wall_speed"], axes["beta"], axes["mu"], _NEEDED,
-        threads=checks.threads(threads), progress=progress,
+        threads=checks.threads(threads), progress=progress, watch=watch,
     )  # fmt: skip
     return _values(system, given, found)
 

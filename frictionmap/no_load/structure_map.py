@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import checks, regimes
 from .._kernels.general.series import Friction
-from ..jobs import Job, Progress, run_counted
+from ..jobs import Job, Progress, Watch, run_counted
 from ..model.system import System
 from .belts import Belts
 from .steady import Sliding
@@ -66,13 +66,13 @@ def sliding_of(system: System, belts: Belts, speed: float, beta: float, mu: floa
 
 def structure_values(
     system: System, belts: Belts, axes: dict[str, np.ndarray], threads: int | None,
-    progress: Progress | None,
+    progress: Progress | None, watch: Watch | None,
 ) -> dict[str, np.ndarray]:  # fmt: skip
     """Variables of all cells of a structure."""
     shape = tuple(axes[name].size for name in ("mu", "wall_speed", "beta"))
     found = _allocate(shape, len(belts.groups), system.n)
     jobs: list[Job] = [(_fill, (system, belts, axes, i, found)) for i in range(axes["wall_speed"].size)]
-    run_counted(jobs, checks.threads(threads), progress, None)
+    run_counted(jobs, checks.threads(threads), progress, watch)
     if len(belts.groups) == 1:
         found |= {name: found[name][..., 0] for name in OF_CONTACTS}
     return found

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from .. import checks
 from ..errors import InputError
-from ..jobs import Progress
+from ..jobs import Progress, Watch
 from ..model.general import refuse_modes
 from ..model.system import System
 from ..units.axes import ratios, require
@@ -92,17 +92,24 @@ def belt_map(
     given = checked(system, wall_speed, beta, mu, units)
     if progress is not None and not callable(progress):
         raise InputError("progress", f"must be a function of two numbers; got {checks.one_line(progress)}")
-    if is_phases(system):
-        values = opening_values(system, given.belts, given.axes, threads, progress)
-    elif not is_one_mass(system):
-        values = structure_values(system, given.belts, given.axes, threads, progress)
-    else:
-        values = _one_mass_values(given, threads, progress)
+    values = values_of_cells(given, threads, progress)
     if len(given.belts.groups) == 1 and not is_phases(system):
         values |= limits_of_motions(given)
     title = "Motions on a belt without a load"
     ds = belt_dataset("sweep", title, system, given.axes, values, units, given.scales)
     return described(ds, system) if is_phases(system) else ds
+
+
+def values_of_cells(
+    given: Given, threads: int | None, progress: Progress | None, watch: Watch | None = None
+) -> dict[str, np.ndarray]:
+    """Variables of all cells, without limits."""
+    arguments = (given.system, given.belts, given.axes, threads, progress, watch)
+    if is_phases(given.system):
+        return opening_values(*arguments)
+    if not is_one_mass(given.system):
+        return structure_values(*arguments)
+    return _one_mass_values(given, threads, progress, watch)
 
 
 def belt_boundaries(
@@ -142,13 +149,15 @@ def limits_of_motions(given: Given) -> dict[str, np.ndarray]:
     return values
 
 
-def _one_mass_values(given: Given, threads: int | None, progress: Progress | None) -> dict[str, np.ndarray]:
+def _one_mass_values(
+    given: Given, threads: int | None, progress: Progress | None, watch: Watch | None
+) -> dict[str, np.ndarray]:
     """Variables of all cells of one mass."""
     axes, belts = given.axes, given.belts
     found = empty_portraits((axes["mu"].size, axes["wall_speed"].size, axes["beta"].size))
     kinetic, ratio = friction_of(belts, axes["beta"], axes["mu"])
     axes_of_cells = (ratio, axes["wall_speed"], kinetic)
-    run(portrait_jobs(law_of(belts), given.system.zeta, axes_of_cells, found), threads, progress)
+    run(portrait_jobs(law_of(belts), given.system.zeta, axes_of_cells, found), threads, progress, watch)
     if belts.share[0] < 0.0:  # the mirror image
         found = found._replace(highest=-found.lowest, lowest=-found.highest)
     if belts.laws[0].curve is not None:

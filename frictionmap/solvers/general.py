@@ -59,6 +59,10 @@ class GeneralEngine(FollowingEngine):
         self.check_static(mu)
         return _limits(find_boundaries(self.system, r, mu, watch=watch))
 
+    def known_limits(self, r: np.ndarray, mu: np.ndarray) -> Limits:
+        self.check_static(mu)
+        return _limits(find_boundaries(self.system, r, mu, searched=False))
+
     def boundaries(self, r: np.ndarray, mu: np.ndarray) -> "xr.Dataset":
         from ..general.dataset import general_boundaries
 

@@ -118,6 +118,10 @@ class Engine(ABC):
     def limits(self, r: np.ndarray, mu: np.ndarray, watch: Watch | None = None) -> Limits:
         """Boundaries of the regimes over r and mu as arrays."""
 
+    def known_limits(self, r: np.ndarray, mu: np.ndarray) -> Limits:
+        """The boundaries that take no search; NaN in the place of others."""
+        return self.limits(r, mu)
+
     @abstractmethod
     def boundaries(self, r: np.ndarray, mu: np.ndarray) -> "xr.Dataset":
         """Boundaries of the regimes over r and mu; see `frictionmap.boundaries`."""

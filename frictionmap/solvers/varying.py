@@ -91,6 +91,9 @@ class VaryingEngine(GeneralEngine):
     def limits(self, r: np.ndarray, mu: np.ndarray, watch: Watch | None = None) -> Limits:
         return _joined_limits(self._each(r, lambda engine, one: engine.limits(one, mu, watch)))
 
+    def known_limits(self, r: np.ndarray, mu: np.ndarray) -> Limits:
+        return _joined_limits(self._each(r, lambda engine, one: engine.known_limits(one, mu)))
+
     def boundaries(self, r: np.ndarray, mu: np.ndarray) -> "xr.Dataset":
         return _joined(self._each(r, lambda engine, one: engine.boundaries(one, mu)), r)
 

@@ -134,6 +134,20 @@ def test_a_block_without_a_spring_is_shown(pages):
         np.testing.assert_array_equal(arrays[name], ds[name].values)
 
 
+@pytest.mark.parametrize("name", ["two", "elastic", "belt", "square"])
+def test_boundaries_without_a_search_come_first(pages, name):
+    """Sticking and slipping are closed forms at once; motions are followed for the others, which are NaN."""
+    _, known = packet(pages[name], "/lines?count=12&known=")
+    _, whole = packet(pages[name], "/lines?count=12")
+    assert known.keys() == whole.keys()
+    for line in whole.keys() & {"line_stick", "line_noslip"}:
+        np.testing.assert_array_equal(known[line], whole[line])
+        assert not np.isnan(known[line]).any()
+    if "line_lim" in whole:
+        assert np.isnan(known["line_lim"]).all()
+        assert not np.isnan(whole["line_lim"]).any()
+
+
 def test_further_ranges_without_stops_are_those_of_sweep(pages):
     ds = swept(pages["square"])
     _, arrays = packet(pages["square"], f"/map?{PIECE}")

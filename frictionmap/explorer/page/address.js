@@ -5,7 +5,7 @@ import { hasUnit } from "./field.js";
 /**
  * What the page shows.
  * @typedef {object} View
- * @property {[number, number]} r          range of the frequency ratio
+ * @property {[number, number]} r          range across: of the frequency ratio, or of the belt speed without a load
  * @property {[number, number]} beta       range of the friction ratio
  * @property {number} mu                   static over kinetic friction
  * @property {string} start                "rest" or "moving"
@@ -44,7 +44,7 @@ function joined(pairs) {
 
 /** Keys of a view that determine its cells, as sent to the server. */
 function pairsOf(view, scene) {
-  const pairs = [["r", view.r.join(",")], ["beta", view.beta.join(",")]];
+  const pairs = [[scene.across.key, view.r.join(",")], ["beta", view.beta.join(",")]];
   if (scene.sliders.some(({ key }) => key === "mu")) pairs.push(["mu", view.mu]);
   if (view.start !== scene.start) pairs.push(["start", view.start]);
   if (view.contact !== scene.contacts[0].key) pairs.push(["contact", view.contact]);
@@ -95,7 +95,8 @@ export function changedKeys(before, after) {
 
 /** Keys of an address whose numbers may have units, with those of a query. */
 function keysWithUnits(scene) {
-  return new Map([["r", "r"], ["beta", "beta"], ["cell", "at"], ...scene.sliders.map(({ key }) => [key, key])]);
+  const { key: across } = scene.across;
+  return new Map([[across, across], ["beta", "beta"], ["cell", "at"], ...scene.sliders.map(({ key }) => [key, key])]);
 }
 
 /** Whether a number of an address has a unit. */
@@ -177,14 +178,14 @@ function place(places) {
 
 /** The keys of an address; a page that keeps maps for some places of its sliders has no others to offer. @returns {Map<string, Key>} */
 function validKeys(scene, places) {
-  const shown = [["r", range()], ["beta", range()], ["quantity", choice(scene.quantities.map(({ key }) => key))], ["cell", cell()]];
+  const shown = [[scene.across.key, range()], ["beta", range()], ["quantity", choice(scene.quantities.map(({ key }) => key))], ["cell", cell()]];
   const lecture = ["lecture", choice(["on"])];
   if (places) return new Map([...shown, lecture, ...scene.sliders.map(({ key }) => [key, place(places[key])])]);
   return new Map([
     ...shown,
     ["start", choice(["rest", "moving"])],
     ["contact", choice(scene.contacts.map(({ key }) => key))],
-    ["cut", choice(["r", "beta"])],
+    ...(scene.unloaded ? [] : [["cut", choice(["r", "beta"])]]),
     lecture,
     ...scene.sliders.map((slider) => [slider.key, number(slider)]),
   ]);
@@ -193,7 +194,7 @@ function validKeys(scene, places) {
 /** What a view has under a key of an address. */
 function valueIn(view, key, scene) {
   const slider = scene.sliders.find((one) => one.key === key);
-  const value = key in view ? view[key] : view.numbers[key] ?? slider.value;
+  const value = key === scene.across.key ? view.r : key in view ? view[key] : view.numbers[key] ?? slider.value;
   return String(value ?? "") || "none";
 }
 
@@ -216,6 +217,7 @@ export function viewOf(hash, scene, places = null) {
   for (const [key, text] of new URLSearchParams(hash.replace(/^#/, ""))) {
     const value = keys.get(key)?.read(text);
     if (value === undefined) faults.push([key, text]);
+    else if (key === scene.across.key) view.r = value;
     else if (key in view) view[key] = value;
     else view.numbers[key] = value;
   }

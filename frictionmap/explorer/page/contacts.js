@@ -34,7 +34,12 @@ function namesOf({ x, dofs }) {
   return Array.from({ length: count }, (_, k) => keyLine(massColour(k), count === 1 ? "x, mass" : nameOfMass(dofs[k])));
 }
 
-/** Times in excitation periods. */
+/** Name of the axis of time. */
+export function clockOf({ clock = "excitation period" }) {
+  return `time / ${clock}`;
+}
+
+/** Times in excitation periods, or what else the clock of a motion is. */
 export function timeOf({ tau }) {
   return Float32Array.from(tau, (value) => value / (2 * Math.PI));
 }
@@ -60,7 +65,7 @@ export function drawContacts(element, motion, moment) {
   const x = [0, time.at(-1)];
   const masses = Array.from({ length: Math.min(motion.x.shape[0], DRAWN) }, (_, k) => ({ x: time, y: row(motion.x, k), colour: massColour(k) }));
   const ofMasses = element.querySelector(".of-masses");
-  moment.line(ofMasses, draw(ofMasses, { x, y: around(...masses.map((line) => line.y)), lines: masses, yName: motion.units.length, xName: "time / excitation period" }), time);
+  moment.line(ofMasses, draw(ofMasses, { x, y: around(...masses.map((line) => line.y)), lines: masses, yName: motion.units.length, xName: clockOf(motion) }), time);
   const loops = element.querySelectorAll(".of-loop");
   const histories = element.querySelectorAll(".of-contact");
   motion.listed.forEach((contact, k) => {

@@ -42,7 +42,7 @@ export class Controls {
     for (const slider of shown.filter((one) => !ofStructure(one))) this.#slider(form, slider);
     const ratios = shown.filter(ofStructure);
     if (ratios.length) this.#ratios(ratios);
-    if (!fixed && !scene.records) this.#cuts();
+    if (!fixed && !scene.records && !scene.unloaded) this.#cuts();
   }
 
   /** Menus of maps. */
@@ -51,7 +51,7 @@ export class Controls {
     this.#choice("quantity", "colour", scene.quantities);
     if (fixed) return;
     if (scene.contacts.length > 1) this.#contact(scene);
-    this.#starts();
+    if (!scene.unloaded) this.#starts();
   }
 
   #add(parent, html, name = "control") {

@@ -45,8 +45,8 @@ function kindOf({ view }) {
   return [view.mu > 1, view.quantity, view.start, view.contact].join();
 }
 
-function guessed({ view, scene: { masses, quick } }) {
+function guessed({ view, scene: { masses, quick, unloaded } }) {
   if (quick) return GUESS.one;
-  if (view.mu === 1) return GUESS.proved;
+  if (view.mu === 1 && !unloaded) return GUESS.proved;
   return { ...GUESS.unproved, milliseconds: masses * GUESS.unproved.milliseconds };
 }

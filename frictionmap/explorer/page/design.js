@@ -23,7 +23,7 @@ export class Design {
    */
   constructor(source, scene, does) {
     [this.source, this.scene, this.does] = [source, scene, does];
-    this.live = source.live; // a page that is a file computes nothing
+    this.live = source.live && !scene.unloaded; // a page that is a file computes nothing
     offer(scene.goals);
     this.goal = noGoal(scene);
     this.answer = null;

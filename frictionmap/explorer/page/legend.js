@@ -43,8 +43,8 @@ export function classesOf(picture) {
 /** Lay out the legend of a picture. */
 export function legend(element, picture) {
   const entries = picture.scale ? [scaleEntry(picture.quantity.label, picture.scale)] : [];
-  for (const { lower, dashes, meaning } of picture.boundaries) {
-    const name = make("span", {}, ...(lower ? ["β", make("sub", {}, lower)] : []));
+  for (const { lower, dashes, meaning, symbol } of picture.boundaries) {
+    const name = make("span", {}, ...(lower ? [symbol, make("sub", {}, lower)] : []));
     entries.push(make("span", {}, keyLine("currentColor", name, styleOf(dashes)), " ", meaning));
   }
   entries.push(...classesOf(picture).map(({ colour, text }) => make("span", {}, swatch(colour), text)));

@@ -152,7 +152,7 @@ class Page {
       const chosen = event.target.closest("[data-save]");
       if (chosen) this.#save(chosen.dataset.save);
     });
-    this.tour = new Tour();
+    this.tour = new Tour(this.scene.unloaded);
     document.addEventListener("click", (event) => {
       if (!event.target.closest("[data-tour]")) return;
       part("keys").close();
@@ -395,6 +395,7 @@ class Page {
   }
 
   #onState(state) {
+    if (state.missing) this.missing = state.missing;
     if (state.error) {
       this.#wrong(state.error);
     } else if (state.held) {
@@ -422,6 +423,7 @@ class Page {
   get #until() {
     const { map, view } = this;
     if (map.stage.dataset.state !== "refining") return "";
+    if (!map.whole && this.missing?.length) return ` Being computed: the boundary ${this.missing.join(" and ")}, then the map.`;
     if (!map.whole) return map.pictures.length ? " Until then the boundaries are shown without the map." : " Until then the axes are shown without the map.";
     return pictureKey(map.whole.view) === pictureKey(view) ? "" : " Until then the map before is shown.";
   }
@@ -604,7 +606,7 @@ class Page {
 
   /** Wait for a motion; if it takes long, remove the one of another cell meanwhile. */
   async #slowly(motion, [r, beta], kept) {
-    const place = `r = ${short(r)}, β = ${short(beta)}`;
+    const place = `${this.scene.across.symbol} = ${short(r)}, β = ${short(beta)}`;
     const slow = setTimeout(() => kept === Boolean(this.view.cell) && this.motion.say(`Computing the motion at ${place}.`), SLOW);
     try {
       return await this.#waiting(motion);
@@ -684,7 +686,7 @@ class Page {
     } else if (letter === "q") {
       const keys = this.quantities.map((quantity) => quantity.key);
       this.change({ quantity: keys[(keys.indexOf(this.view.quantity) + 1) % keys.length] });
-    } else if (this.source.live) {
+    } else if (this.source.live && !this.scene.unloaded) {
       const along = letter === "r" ? "r" : "beta";
       this.change({ cut: this.view.cut === along ? "" : along });
     }

@@ -2,7 +2,7 @@
 
 import { DRAWN, colour, massColour, short } from "./axes.js";
 import { around, draw } from "./chart.js";
-import { bandsOf, drawContacts, layOut, timeOf } from "./contacts.js";
+import { bandsOf, clockOf, drawContacts, layOut, timeOf } from "./contacts.js";
 import { Drawing } from "./drawing.js";
 import { groupRow, keyLine, make, nameOfMass, paragraph, spaced, tableRow } from "./dom.js";
 import { eventsOf } from "./events.js";
@@ -106,8 +106,8 @@ export class MotionPanel {
     const none = "none" in motion;
     this.#part("h2 i").style.background = look.colour;
     this.#part(".regime").textContent = none ? REGIMES.unresolved : REGIMES[motion.regime] ?? motion.regime;
-    const { frequency, force } = motion.physical;
-    const place = `r = ${short(motion.r)}${inUnits(motion.r, frequency)}, β = ${short(motion.beta)}${inUnits(motion.beta, force)}`;
+    const { across: { symbol, measure }, physical } = motion;
+    const place = `${symbol} = ${short(motion.r)}${inUnits(motion.r, physical[measure])}, β = ${short(motion.beta)}${inUnits(motion.beta, physical.force)}`;
     this.#part(".where").textContent = `${kind && `${kind}: `}${place}${motion.contact ? `; ${motion.contact}` : ""}`;
     this.#part(".words").replaceChildren(...(none ? [motion.none] : [...motion.summary, motion.comment]).filter(Boolean).map(paragraph));
     if (kind === "example") this.#part(".words").append(make("p", { className: "hint" }, `${HINT} `, tourButton()));
@@ -115,6 +115,7 @@ export class MotionPanel {
     if (!none) this.#enliven();
     const several = !none && motion.contacts.length > 0;
     for (const figure of this.panel.querySelectorAll(".moves")) figure.hidden = none || several;
+    if (!motion.z_harmonics) this.#part(".spectrum").parentNode.hidden = true;
     this.#part(".contacts").hidden = !several;
     if (several) this.#layOutContacts();
     this.#part(".others").hidden = true;
@@ -172,8 +173,9 @@ export class MotionPanel {
 
   #numberRow(entry, value) {
     const { units } = this.motion;
-    const unit = { length: units.length, energy: units.energy, force: units.force }[entry.unit] ?? entry.unit;
-    const physical = this.motion.physical[{ length: "length", energy: "work", force: "force" }[entry.unit]];
+    const { length, energy, force } = units;
+    const unit = { length, energy, force, frequency: "ω₁", growth: "ω₁", velocity: `ω₁${length}` }[entry.unit] ?? entry.unit;
+    const physical = this.motion.physical[entry.unit === "energy" ? "work" : entry.unit];
     if (entry.why) return tableRow(entry.label, `none: ${entry.why}`, "text");
     return tableRow(entry.label, `${short(value, 6)}${Number.isFinite(value) && unit ? ` ${unit}` : ""}${inUnits(value, physical)}`);
   }
@@ -254,7 +256,7 @@ export class MotionPanel {
     const forces = [{ x: time, y: motion.friction, colour: colour("warm"), width: 1.8 }];
     if (other) forces.push(this.#otherLine("friction", time));
     const drawn = draw(lower, {
-      x, y: around(...forces.map((line) => line.y)), lines: forces, bands, xName: "time / excitation period", yName: motion.units.force,
+      x, y: around(...forces.map((line) => line.y)), lines: forces, bands, xName: clockOf(motion), yName: motion.units.force,
     });
     this.moment.line(lower, drawn, time);
     const names = [];
@@ -282,6 +284,7 @@ export class MotionPanel {
   /** Moduli of harmonics; the names of the bars. */
   #drawSpectrum() {
     const { z_harmonics: z, friction_harmonics: friction } = this.motion;
+    if (!z) return [];
     const [one, other] = [colour("accent"), colour("warm")];
     const top = Math.max(1e-12, ...[...z, ...friction].filter(Number.isFinite)) * 1.6;
     const bars = [];

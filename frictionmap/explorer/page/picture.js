@@ -40,7 +40,7 @@ export class Picture {
     this.about = packet.about;
     this.classes.set(packet.classes, first * this.rows);
     if (this.values) this.values.set(packet.values, first * this.rows);
-    for (const name of packet.about.lines.flatMap(({ names }) => names)) {
+    for (const name of packet.about.lines.flatMap(({ names }) => names).filter((one) => packet[one])) {
       this.limits[name] ??= new Float64Array(this.columns).fill(NaN);
       this.limits[name].set(packet[name], first);
     }
@@ -122,6 +122,6 @@ export class Picture {
     const start = this.view.start === "rest" ? "start at rest" : "start in motion";
     const cells = `${this.columns} × ${this.rows} cells`;
     const shown = this.about.contact ? `${this.quantity.label} of ${this.about.contact}` : this.quantity.label;
-    return [this.about.system, `μ = ${short(this.view.mu)}`, start, shown, cells].join("; ");
+    return [this.about.system, `μ = ${short(this.view.mu)}`, ...(this.about.across.key === "r" ? [start] : []), shown, cells].join("; ");
   }
 }

@@ -7,19 +7,19 @@ const ROOM = { left: 64, right: 16, top: 18, bottom: 50 };
 const SECOND = { right: 44, top: 26 };
 
 /** Further axes of a map in units, where they are known: {factor, name}. */
-function secondsOf({ frequency, force }) {
+function secondsOf({ physical, across }) {
   const axis = (name, one) => (one ? { factor: one.factor, name: `${name} [${one.unit}]` } : null);
-  return { r: axis("frequency", frequency), beta: axis("friction force", force) };
+  return { r: axis(across.words, physical[across.measure]), beta: axis("friction force", physical.force) };
 }
 
 /** Names of the axes of a map. */
-function namesOf(units) {
-  return { r: "frequency ratio r = ω/ω₁", beta: `friction ratio β = ${units.beta}` };
+function namesOf({ units, across }) {
+  return { r: across.name, beta: `friction ratio β = ${units.beta}` };
 }
 
 /** Where the cells lie on a canvas, in pixels of the style sheet. @param {object} about  description of the cells */
 export function areaOf({ width, height }, about) {
-  const seconds = secondsOf(about.physical);
+  const seconds = secondsOf(about);
   const right = sized(seconds.beta ? ROOM.right + SECOND.right : ROOM.right);
   const top = sized(seconds.r ? ROOM.top + SECOND.top : ROOM.top);
   const [left, bottom] = [sized(ROOM.left), sized(ROOM.bottom)];
@@ -82,9 +82,10 @@ export class Plate {
     const picture = known.at(-1) ?? this.pictures.at(-1);
     if (!picture) return;
     keepTo(pen, this.area);
-    const curves = picture.about.lines.flatMap(({ names, dashes }) => names.map((name) => [name, dashes]));
-    for (const [name, dash] of curves) {
-      const path = this.#path(picture, (picture.lines ?? picture.limits)[name]);
+    const curves = picture.about.lines.flatMap(({ names, dashes, upright }) => names.map((name) => [name, dashes, upright]));
+    for (const [name, dash, upright] of curves) {
+      const values = (picture.lines ?? picture.limits)[name] ?? [];
+      const path = upright ? this.#uprightPath(picture, values) : this.#path(picture, values);
       for (const [width, ink, dashes] of [[3.6, "rgb(255 255 255 / 0.75)", []], [1.5, "#000", dash]]) {
         [pen.lineWidth, pen.strokeStyle] = [sized(width), ink];
         pen.setLineDash(dashes.map(sized));
@@ -111,9 +112,18 @@ export class Plate {
     return path;
   }
 
+  /** The path of a limit whose values over friction lie along the axis across. */
+  #uprightPath(picture, values) {
+    const path = new Path2D();
+    const size = (picture.beta[1] - picture.beta[0]) / values.length;
+    const most = this.area.x + this.area.width + 50;
+    values.forEach((value, k) => path[k ? "lineTo" : "moveTo"](Math.min(most, this.x(value)), this.y(picture.beta[0] + (k + 0.5) * size)));
+    return path;
+  }
+
   #drawAxes(pen) {
     const { area, ranges } = this;
-    const names = namesOf(this.about.units);
+    const names = namesOf(this.about);
     const [ink, faint] = [colour("ink"), colour("faint")];
     [pen.lineWidth, pen.strokeStyle, pen.fillStyle, pen.font] = [1, faint, ink, font(12)];
     pen.strokeRect(area.x - 0.5, area.y - 0.5, area.width + 1, area.height + 1);
@@ -143,7 +153,7 @@ export class Plate {
   /** The same axes in units. */
   #drawSeconds(pen) {
     const { area, ranges } = this;
-    const seconds = secondsOf(this.about.physical);
+    const seconds = secondsOf(this.about);
     if (seconds.r) {
       const { factor, name } = seconds.r;
       [pen.textAlign, pen.textBaseline] = ["center", "bottom"];

@@ -103,7 +103,7 @@ export class Player {
     const place = Math.min(this.periods * this.samples, this.motion.tau.length - 1);
     const words = this.onMove(Math.abs(place - Math.round(place)) < 1e-6 ? Math.round(place) : place);
     this.slider.value = Math.round(this.periods * STEPS);
-    if (!this.playing) this.slider.ariaValueText = `${short(this.periods, 3)} of ${short(this.length, 3)} excitation periods: ${words}`;
+    if (!this.playing) this.slider.ariaValueText = `${short(this.periods, 3)} of ${short(this.length, 3)} ${this.motion.clock ? "periods" : "excitation periods"}: ${words}`;
   }
 
   #run() {
@@ -125,8 +125,8 @@ export class Player {
     if (this.playing) this.slider.ariaValueText = "running";
     this.button.ariaLabel = this.playing ? "Pause the motion" : "Play the motion";
     this.button.title = `${this.playing ? "Pause" : "Play"} (p)`;
-    const { physical: { frequency } = {}, r } = this.motion ?? {};
-    const hertz = frequency && r * frequency.factor * HERTZ[frequency.unit];
+    const { physical: { frequency } = {}, r, rate = r } = this.motion ?? {};
+    const hertz = frequency && rate * frequency.factor * HERTZ[frequency.unit];
     this.slowed.textContent = hertz ? `slowed ${short(this.pace * hertz, 2)} times` : "";
   }
 }

@@ -87,12 +87,21 @@ export class Refiner {
 
   /** Show the boundaries alone: the first map of a page may wait for compilation. */
   async #drawLines(request, signal) {
-    const packet = await this.source.lines(request.view, request.scene, request.columns, signal);
-    const picture = new Picture(request.view, request.view, 1, 1, request.table, request.kind);
-    picture.about = packet.about;
-    picture.lines = request.lines = finerLines(packet);
+    const { view, scene, columns } = request;
+    if (!scene.quick && !scene.unloaded) this.#show(request, await this.source.lines(view, scene, columns, signal, true));
+    const packet = await this.source.lines(view, scene, columns, signal);
+    request.lines = finerLines(packet);
     this.#begun = true;
+    this.#show(request, packet);
+  }
+
+  /** Show boundaries without cells, and say which of them are still to come. */
+  #show(request, packet) {
+    const picture = new Picture(request.view, request.view, 1, 1, request.table, request.kind);
+    [picture.about, picture.lines] = [packet.about, finerLines(packet)];
+    const missing = packet.about.lines.filter(({ lower, names }) => lower && names.every((name) => picture.lines[name].every(Number.isNaN)));
     this.onPicture(picture);
+    this.onState({ missing: missing.map(({ symbol, lower }) => `${symbol}_${lower}`) });
   }
 
   async #refine(request, run) {
@@ -125,7 +134,7 @@ export class Refiner {
       const width = Math.max(1, Math.floor((first ? 2 * PIECE : PIECE) / cost.column));
       const last = Math.min(columns, columns - at - width < width / 2 ? columns : at + width);
       const piece = { columns, rows, first: at, last };
-      if (columns < request.columns && !request.lines) piece.lines = request.columns;
+      if (!request.lines && (columns < request.columns || request.scene.unloaded)) piece.lines = request.columns;
       const packet = await this.source.map(request.view, request.scene, piece, run.control.signal);
       if (piece.lines && this.source.live) request.lines = finerLines(packet);
       picture.lines = request.lines;

@@ -106,9 +106,9 @@ export class Server {
     return (await this.#get("example", query, signal)).json();
   }
 
-  /** The boundaries of a view at a given number of frequencies. */
-  lines(view, scene, count, signal) {
-    return this.#packet("lines", view, scene, { count }, signal);
+  /** The boundaries of a view at a given number of frequencies; `known`: those that take no search. */
+  lines(view, scene, count, signal, known = false) {
+    return this.#packet("lines", view, scene, known ? { count, known: "" } : { count }, signal);
   }
 
   /** Stability of a cell, and the motion from the other initial state. */

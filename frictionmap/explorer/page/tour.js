@@ -12,13 +12,21 @@ const STEPS = [
   ["#save", "Save", "Save a link, a configuration, a picture or the cells. Help lists the keys."],
 ];
 
+/** Steps whose words differ on a belt without a load, by their numbers; one without words is left out. */
+const UNLOADED = {
+  0: "Each point is one steady motion. Across is the belt speed, up is the friction force. The colours show which motions are stable: steady sliding, a stick-slip cycle, a cycle without stops, or several of them.",
+  4: "",
+};
+
 /** Windows in which the page is higher than the window. */
 const SCROLLS = matchMedia("(max-width: 64rem)");
 
 export class Tour {
   #step = 0;
 
-  constructor() {
+  /** @param {boolean} unloaded  whether the page is of a belt without a load */
+  constructor(unloaded) {
+    this.steps = STEPS.map(([place, title, text], k) => [place, title, unloaded ? UNLOADED[k] ?? text : text]).filter(([, , text]) => text);
     const button = (text, does) => make("button", { type: "button", textContent: text, onclick: does });
     this.title = make("h2");
     this.text = make("p");
@@ -43,16 +51,16 @@ export class Tour {
 
   #go(step) {
     document.querySelector(".toured")?.classList.remove("toured");
-    if (step >= STEPS.length) {
+    if (step >= this.steps.length) {
       this.#end();
       return;
     }
     this.#step = step;
-    const [place, title, text] = STEPS[step];
-    this.title.textContent = `${step + 1} of ${STEPS.length}: ${title}`;
+    const [place, title, text] = this.steps[step];
+    this.title.textContent = `${step + 1} of ${this.steps.length}: ${title}`;
     this.text.textContent = text;
     this.back.disabled = step === 0;
-    this.next.textContent = step === STEPS.length - 1 ? "Done" : "Next";
+    this.next.textContent = step === this.steps.length - 1 ? "Done" : "Next";
     const target = [...document.querySelectorAll(place)].find((part) => part.checkVisibility());
     target?.classList.add("toured");
     target?.scrollIntoView({ block: SCROLLS.matches ? "start" : "nearest" });

@@ -20,10 +20,15 @@ class BankCycle(Cycle):
     found: Found  # type: ignore[assignment]  # the same names
     steps: Steps  # type: ignore[assignment]
 
+    @property
+    def shapes(self) -> np.ndarray:
+        """Displacements of the masses, or of the points of a structure given by modes, by the modes."""
+        return self.found.shapes
+
     def displacements(self, tau: np.ndarray, order: int = 0, row: int | slice = slice(None)) -> np.ndarray:
         """Displacements of the masses, or with `order` 1 their derivatives by tau; of one row or all."""
         found = at_times(self.steps, self.modal.squares.size, tau)
-        return np.asarray(self.modal.phi[row] @ (found.rate if order else found.q))
+        return np.asarray(self.shapes[row] @ (found.rate if order else found.q))
 
     def points(self, highest: int) -> Points:
         """The motion at Gauss points that are dense enough for harmonics up to `highest`."""

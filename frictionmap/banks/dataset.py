@@ -7,7 +7,7 @@ import xarray as xr
 
 from .. import checks
 from ..datasets.variables import coordinate, label_variable
-from ..general.dataset import chosen_outputs, contact_coordinates, refuse_static
+from ..general.dataset import chosen_outputs, contact_coordinates, mass_coordinates, refuse_static
 from ..general.outputs import depends_on_places, is_of_masses
 from ..jobs import Progress, Watch
 from ..model.settings import Solver
@@ -31,9 +31,9 @@ def limit_variables(system: System, r: np.ndarray) -> dict[str, xr.Variable]:
 def bank_boundaries(system: System, r: np.ndarray, mu: np.ndarray) -> xr.Dataset:
     """Boundaries of a system with banks."""
     refuse_static(system.contact_system, mu)
-    axes = {"mu": mu, "r": r, "dof": np.array(system.dofs.numbers)}
-    coords = {name: coordinate(name, axis) for name, axis in axes.items()}
-    return xr.Dataset(limit_variables(system, r), coords=coords | contact_coordinates(system))
+    coords = {name: coordinate(name, axis) for name, axis in {"mu": mu, "r": r}.items()}
+    coords |= mass_coordinates(system) | contact_coordinates(system)
+    return xr.Dataset(limit_variables(system, r), coords=coords)
 
 
 def solve_cells(
@@ -76,7 +76,7 @@ def bank_map(
     variables = {name: labelled(name, found[name], general) for name in names}
     coords = {name: coordinate(name, values) for name, values in axes.items()}
     if any(is_of_masses(name) for name in names):
-        coords["dof"] = coordinate("dof", np.array(system.dofs.numbers))
+        coords |= mass_coordinates(system)
     return xr.Dataset(
         variables | limit_variables(system, axes["r"]), coords=coords | contact_coordinates(system)
     )

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..general.held import least_static_friction, linear_parts, orders_of, stick_scales
-from ..general.problem import modal_system, static_offset
+from ..general.problem import modal_system
 from ..general.starts import states_at
 from ..model.general import DISPLACEMENT, MergedContact
 from ..model.system import System
@@ -75,8 +75,9 @@ def bank_system(system: System, r: float) -> BankSystem:
     contacts = tuple(_bank(group, f"contacts[{k}]") for k, group in enumerate(general.groups, 1))
     loads = {n: linear_parts(system, modes.stiffness, n, np.array([r]))[1][0] for n in orders_of(general)}
     moved = dict(general.base) if any(one.moved for one in contacts) else {}
-    offset = static_offset(system)[1] if general.offset.any() else None
-    return BankSystem(modes.mass, modes.damping, modes.stiffness, contacts, loads, moved, offset)
+    offset = np.linalg.solve(modes.stiffness, general.offset) if general.offset.any() else None
+    points = None if general.points is None else general.points.shapes
+    return BankSystem(modes.mass, modes.damping, modes.stiffness, contacts, loads, moved, offset, points)
 
 
 def needed_friction(system: System, r: np.ndarray) -> np.ndarray:
@@ -119,7 +120,7 @@ def changes_with_r(system: System) -> bool:
 def least_ratio(system: System) -> float:
     """Least r > 0 at which motions are followed."""
     given = bank_system(system, 1.0)
-    return fastest(problem_of(given, modal(given), np.zeros((0, system.n)))) / _HIGHEST_RATE  # type: ignore[arg-type]
+    return fastest(problem_of(given, modal(given), np.zeros((0, given.n)))) / _HIGHEST_RATE  # type: ignore[arg-type]
 
 
 def check_ratios(system: System, r: np.ndarray) -> None:

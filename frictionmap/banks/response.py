@@ -17,7 +17,7 @@ from .motion import at_times
 
 def _traces(cycle: BankCycle, tau: np.ndarray) -> dict[str, np.ndarray]:
     """Motion of masses and contacts, and the forces, over tau; a contact is held while no element slips."""
-    steps, phi = cycle.steps, cycle.modal.phi
+    steps, phi = cycle.steps, cycle.shapes
     found, general = at_times(steps, cycle.modal.squares.size, tau), cycle.system.contact_system
     slips = steps.level[found.step].T > 0
     traces = {

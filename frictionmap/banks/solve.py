@@ -26,6 +26,11 @@ def solved_of(problem: Problem, cells: Cells) -> Solved:
     return Solved(cells, law, presses, observed // 2, True, observed)
 
 
+def _observed(system: BankSystem) -> np.ndarray:
+    """Displacements of the points, and of the storeys."""
+    return np.asarray(observed_rows(len(system.rows)) @ system.rows)
+
+
 class Ratios(NamedTuple):
     """Frequency ratios > 0, and what belongs to each."""
 
@@ -57,7 +62,7 @@ def sweep_banks(
         Arrays (n_r, n_beta, ...) by name; of contacts or masses with a last dimension.
     """
     modes = modal(system)  # type: ignore[arg-type]  # it has the three matrices
-    problem = problem_of(system, modes, observed_rows(system.n) if masses else np.zeros((0, system.n)))
+    problem = problem_of(system, modes, _observed(system) if masses else np.zeros((0, system.n)))
     cancel = np.zeros(1, np.uint8)
     jobs: list[Job] = []
     found: list[Cells] = []
@@ -100,6 +105,7 @@ class Found(NamedTuple):
 
     problem: Problem
     modes: Modal
+    shapes: np.ndarray  # (p, m) displacements of the points by the modes
     numbers: dict[str, np.ndarray]  # outputs
     averaged: int  # periods of the load that its steps cover; 0: none was found
     period: int
@@ -109,7 +115,7 @@ class Found(NamedTuple):
 def find_motion(system: BankSystem, r: float, beta: float, limit: float, start: Start, cycles: int) -> Found:
     """Find one steady motion and its steps; arguments as of `sweep_banks`."""
     modes = modal(system)  # type: ignore[arg-type]
-    problem = problem_of(system, modes, observed_rows(system.n))
+    problem = problem_of(system, modes, _observed(system))
     row = row_of(system, problem, modes, r)
     grid = grid_of(system, modes, np.array([beta]), start, cycles)
     cells, motion = _one(problem, row, grid, 0)
@@ -117,11 +123,12 @@ def find_motion(system: BankSystem, r: float, beta: float, limit: float, start: 
     offset = modal_offset(system, modes)
     _put_offset(problem, cells, offset)
     numbers = {name: values(solved_of(problem, cells))[0] for name, values in TABLE.items()}
+    shapes = system.rows @ modes.phi
     averaged = int(np.nan_to_num(cells.numbers[0, AVERAGED]))
     if averaged <= 0:
-        return Found(problem, modes, numbers, 0, 0, None)
+        return Found(problem, modes, shapes, numbers, 0, 0, None)
     _, motion = _one(problem, row, grid, int(motion.record.count[0]))
-    return Found(problem, modes, numbers, averaged, averaged, steps_of(problem, motion, offset))
+    return Found(problem, modes, shapes, numbers, averaged, averaged, steps_of(problem, motion, offset))
 
 
 def _one(problem: Problem, row: Any, grid: Grid, steps: int) -> tuple[Cells, Any]:

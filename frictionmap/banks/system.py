@@ -60,8 +60,9 @@ class BankSystem:
     contacts : Bank
     loads : phasors (n,) by order
     base : phasors of the base motion by order, for walls that move with it
-    offset : (n,) displacements under the constant loads, about which the motion is: no spring of an element
-        is stretched by them
+    offset : (n,) displacements of the masses under the constant loads, about which the motion is: no spring
+        of an element is stretched by them
+    points : (p, n) displacements of points; None where the masses are the points
     """
 
     mass: np.ndarray
@@ -71,8 +72,14 @@ class BankSystem:
     loads: Mapping[int, np.ndarray] = field(default_factory=dict)
     base: Mapping[int, complex] = field(default_factory=dict)
     offset: np.ndarray | None = None
+    points: np.ndarray | None = None
 
     @property
     def n(self) -> int:
         """Number of masses."""
         return self.mass.shape[0]
+
+    @property
+    def rows(self) -> np.ndarray:
+        """Displacements of all points, (p, n)."""
+        return np.eye(self.n) if self.points is None else self.points

@@ -187,18 +187,18 @@ def on_modes(system: Owner, modes: Modes, contacts: ContactSystem, frequency: fl
             "springs or contacts[].normal",
             "with modes: they are for chains and matrices; omit it",
         )
-    if contacts.has_banks:
-        raise InputError(
-            "cannot use",
-            "contacts[].bank",
-            "= 'contact', or more than 64 elements, with modes: such banks are for chains and matrices; use "
-            "fewer elements",
-        )
     shapes = modes.shapes * (np.sqrt(system.stiffness_scale) / frequency)
     rigid = any(group.stiffness is None for group in contacts.groups)
     residual = None
     if modes.residual is not None and not (modes.optional and rigid):
         residual = modes.residual * system.stiffness_scale
+    if contacts.has_banks and residual is not None and residual.any():
+        raise InputError(
+            "cannot use",
+            "contacts[].bank",
+            "= 'contact', or more than 64 elements, with modes and a residual flexibility: it is a spring in "
+            "series with the bank; use up to 64 elements and bank = 'elements', or leave out the residual",
+        )
     points = Points(shapes, contacts.vectors, contacts.forces, contacts.offset, residual)
     check_residual(points, contacts.groups)
     for group in contacts.groups:

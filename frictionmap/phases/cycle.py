@@ -46,6 +46,11 @@ class Cycle:
         return self.found.modes
 
     @property
+    def shapes(self) -> np.ndarray:
+        """Displacements of the masses, or of the points of a structure given by modes, by the modes."""
+        return self.modal.phi
+
+    @property
     def period(self) -> int:
         """Periods of the load; 0: it does not repeat."""
         return self.found.period
@@ -64,7 +69,7 @@ class Cycle:
         """Displacements of the masses, or with `order` 1 their derivatives by tau; of one row or all."""
         length = 2.0 * np.pi * self.found.averaged
         found = at_times(self.steps, self.modal.squares.size, np.mod(tau - SECTION, length))
-        return np.asarray(self.modal.phi[row] @ (found.rate if order else found.q))
+        return np.asarray(self.shapes[row] @ (found.rate if order else found.q))
 
     def points(self, highest: int) -> Points:
         """The motion at Gauss points that are dense enough for harmonics up to `highest`."""
@@ -92,7 +97,7 @@ def harmonic_phasors(cycle: Cycle, highest: int) -> dict[str, np.ndarray]:
     """Harmonics of masses, contacts and friction forces; NaN of a motion that does not repeat."""
     problem, points = cycle.found.problem, cycle.points(highest)
     values = {
-        "displacement_harmonic": cycle.modal.phi @ points.q, "contact_harmonic": problem.chi @ points.q,
+        "displacement_harmonic": cycle.shapes @ points.q, "contact_harmonic": problem.chi @ points.q,
         "friction_harmonic": points.friction,
     }  # fmt: skip
     found = {name: harmonics(one, points, highest, cycle.found.averaged) for name, one in values.items()}

@@ -10,7 +10,7 @@ from .._kernels.phases.problem import SECTION
 from ..datasets.labels import CONTACT_TRACES, EXCERPT, LABELS, OLDER_NAMES
 from ..datasets.variables import coordinate, label_variable
 from ..errors import NoSteadyState
-from ..general.dataset import contact_coordinates, refuse_static
+from ..general.dataset import contact_coordinates, mass_coordinates, refuse_static
 from ..general.normal_limits import limit_variables
 from ..general.response import contact_trace, load_over, of_cell
 from ..model.settings import HARMONICS, Solver
@@ -140,7 +140,7 @@ def motion_dataset(
         "tau": tau, "dof": np.array(system.dofs.numbers), "harmonic": np.arange(HARMONICS + 1),
         "part": np.array(["real", "imaginary"]), "r": cycle.r, "beta": beta, "mu": mu,
     }  # fmt: skip
-    coords = {name: coordinate(name, values) for name, values in own.items()}
+    coords = {name: coordinate(name, values) for name, values in own.items()} | mass_coordinates(system)
     return xr.Dataset(variables, coords=coords | contact_coordinates(system) | spring_coordinates(system))
 
 

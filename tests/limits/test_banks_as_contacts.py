@@ -14,6 +14,10 @@ COUNTS = ("slips_per_cycle", "slip_reversals_per_cycle", "elastic_fraction")
 OUTPUTS = ("regime", *RANGES, *COUNTS, "amplitude", "peak_to_peak", "work_friction")
 
 CHAIN = {"mass_ratios": [1.0, 0.8], "stiffness_ratios": [1.0, 1.2], "damping_ratios": 0.02}
+TWO_POINTS = {
+    "modes": fm.Modes([1.0, 3.0], [0.03, 0.02], [[1.0, -0.5], [0.6, 0.9]], ["tip", "load"]),
+    "load_mass": "load",
+}
 MANY = {1: 1.0, 2: 0.4 - 0.5j, 5: 0.3 + 0.4j, 9: 0.7}  # turns within turns
 
 
@@ -75,6 +79,7 @@ CASES = {
         {"damping_ratios": 0.03, "excitation": "base"},
     ),
     "constant loads": ([bank(K, U, masses=2)], CHAIN | {"load_offset": [0.3, -0.2]}),
+    "a structure given by modes": ([bank(K, U, masses=["tip"])], TWO_POINTS),
     "a base of constant acceleration": (
         [bank(K, U)],
         {"damping_ratios": 0.03, "excitation": "base", "base_control": "acceleration"},
@@ -206,6 +211,25 @@ def test_curves_of_a_bank():
     assert curves.equivalent_stiffness.item() == pytest.approx(ratio.real, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    "system", [CHAIN | {"load_offset": [0.3, -0.2]}, TWO_POINTS], ids=["offset", "modes"]
+)
+def test_a_response_of_a_bank_is_that_of_its_elements(system):
+    k, u = drawn(6, 5)
+    place = "tip" if "modes" in system else 1
+    one, each = (
+        fm.response(
+            fm.System(contacts=[bank(k, u, masses=[place], bank=kind)], **system), 0.9, 0.3, points=60
+        )
+        for kind in ("contact", "elements")
+    )
+    for name in ("x", "v", "displacement_harmonic", "work_input", "work_damping", "amplitude"):
+        assert one[name].values == pytest.approx(each[name].values, abs=1e-10), name
+    assert one.z.values == pytest.approx(each.z.values[0], abs=1e-10)
+    assert one.friction.values == pytest.approx(each.friction.values.sum(axis=0), abs=1e-10)
+    assert set(one.coords) >= set(each.coords) - {"contact", "contact_name"}
+
+
 def test_parallel_contacts_at_a_joined_wall_begin_where_one_does():
     """A mass at a wall that moves with the base begins at its place, however many contacts join them."""
     starts = []
@@ -235,6 +259,14 @@ REFUSED = [
     ([replace(HALVES, normal_load={2: 0.5})], {}, "cannot use contacts[1].normal_load with a bank"),
     ([HALVES], {"springs": [{"gap": 0.1, "stiffness": 1.0}]}, "cannot use springs with a bank"),
 ]  # fmt: skip
+
+
+def test_a_residual_is_refused_with_a_bank():
+    """It is a spring in series with all elements: their places would depend on each other."""
+    given = TWO_POINTS["modes"]
+    modes = fm.Modes(given.w, given.zeta, given.shapes, ["tip", "load"], 0.01 * np.eye(2))
+    with pytest.raises(fm.InputError, match=r"contacts\[\].bank.*residual flexibility"):
+        fm.System(modes=modes, load_mass="load", contacts=[replace(HALVES, masses=("tip",))])
 
 
 @pytest.mark.parametrize(("contacts", "more", "message"), REFUSED)

@@ -73,7 +73,7 @@ def _put_loads(row, count, length, motion):
             share = scale if i < modes else 1.0
             term = share * (phasors[0, n, i] * c + phasors[1, n, i] * s)
             after = share * (phasors[1, n, i] * c - phasors[0, n, i] * s)
-            for k in range(count):
+            for k in range(count if term != 0.0 or after != 0.0 else 0):
                 loads[k, i] += term
                 term, after = after * (way * _PARTS_OF[k]), -term * (way * _PARTS_OF[k])
 

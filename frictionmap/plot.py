@@ -15,7 +15,7 @@ from .errors import InputError
 from .files.reading import kind
 from .model.settings import CURVE_OUTPUTS
 from .model.system import System
-from .pictures.curves.figure import CURVE_VARIABLES, plot_curves
+from .pictures.curves.figure import CURVE_VARIABLES, few_curves, plot_curves
 from .pictures.curves.harmonics import HARMONIC_VARIABLES
 from .pictures.designs.figure import plot_design
 from .pictures.fits.figure import plot_fit
@@ -45,6 +45,7 @@ __all__ = [
     "animate",
     "check_picture",
     "draw",
+    "few_curves",
     "pictured",
     "plot_belt",
     "plot_belt_motion",

@@ -600,7 +600,7 @@ def _plot(options: Options) -> None:
         _plot_structure(options)
         return
     from ..files.places import claimed
-    from ..plot import check_picture, pictured, save_picture
+    from ..plot import check_picture, few_curves, kind, pictured, save_picture
 
     if options.output is not None:
         check_picture(options.output)
@@ -608,6 +608,9 @@ def _plot(options: Options) -> None:
     names, along = pictured(options.quantity), options.against is not None
     ds = _maps_along(options, names["map"]) if along else _chosen(options, names)
     given: Any = {name: getattr(options, name) for name in FIGURE if getattr(options, name) is not None}
+    note = ""
+    if kind(ds) == "curves" and options.beta is None:
+        ds, note = few_curves(ds)
     with claimed(path, options.overwrite, [options.file]) as output:
         output.fill(
             lambda scratch: save_picture(
@@ -621,7 +624,7 @@ def _plot(options: Options) -> None:
             )
         )
     if not options.quiet:
-        _print(f"wrote {path}")
+        _print(f"wrote {path}{note}")
 
 
 def _export(options: Options) -> None:

@@ -23,8 +23,8 @@ _INDENT = 24
 #: Values of a list that are shown.
 _SHOWN = 6
 
-#: Kinds of files whose variables are named only, in short.
-_IN_SHORT = ("map", "curves", "response", "shares")
+#: Kinds of files whose variables are only named in short.
+_IN_SHORT = ("map", "curves", "response", "shares", "belt")
 
 #: Dimensions of lists short enough to be printed; what has others is only named.
 _LISTS = frozenset(("mu", "mode", "held_mode", "invariant", "dof", "mass_invariant"))
@@ -160,7 +160,7 @@ def describe_file(ds: xr.Dataset, verbose: bool = False) -> str:
     lines += axis_lines(ds)
     if not verbose and what in _IN_SHORT:
         return "\n".join([*lines, *name_lines(ds), *_describe_results(ds, what)])
-    if what == "belt":
+    if what == "belt":  # all of them, as they are of no other kind
         names = [str(name) for name in ds.data_vars if not is_in_si(str(name))]
         in_si = ", ".join(str(name) for name in ds.data_vars if name not in names)
         beside = _entry("in SI units", in_si) if in_si else []
@@ -180,7 +180,7 @@ def describe_file(ds: xr.Dataset, verbose: bool = False) -> str:
 
 def name_lines(ds: xr.Dataset) -> list[str]:
     """The names of the variables, without those in SI units, and how to list their meanings."""
-    listed = ", ".join(str(name) for name in ds.data_vars if name not in IN_SI)
+    listed = ", ".join(str(n) for n in ds.data_vars if n not in IN_SI and not is_in_si(str(n)))
     lines = textwrap.wrap(listed, _WIDTH, initial_indent="  ", subsequent_indent="  ")
     return ["variables (info --verbose describes them)", *lines]
 
@@ -199,7 +199,8 @@ def header_lines(ds: xr.Dataset, what: str, verbose: bool = True) -> list[str]:
 
 def axis_lines(ds: xr.Dataset) -> list[str]:
     """Describe every axis and its further coordinates."""
-    return ["axes", *(line for name in ds.coords for line in _entry(str(name), _axis(ds[name])))]
+    names = sorted(map(str, ds.coords), key=lambda name: name not in CELL)  # those of every cell first
+    return ["axes", *(line for name in names for line in _entry(name, _axis(ds[name])))]
 
 
 def variable_lines(ds: xr.Dataset) -> list[str]:
@@ -303,6 +304,9 @@ def _describe_results(ds: xr.Dataset, what: str) -> Iterator[str]:
         yield describe_map(ds)
     elif what == "shares":
         yield describe_shares(ds)
+    elif what == "belt":
+        yield from describe_belts(ds)
+        return
     elif what == "response":
         yield describe_response(ds)
         yield from _motion(ds)

@@ -60,7 +60,11 @@ def test_map_info_export_plot(config, capsys):
     assert "no load" in ds.attrs["system"]
     assert ds.attrs["config"] == TEXT
     assert main(["info", "pad.nc"]) == 0
-    assert "[belt]" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "[belt]" in said
+    assert "growth rate of small vibrations" not in said
+    assert main(["info", "pad.nc", "--verbose"]) == 0
+    assert "growth rate of small vibrations" in capsys.readouterr().out
     assert main(["info", "--json", "pad.nc"]) == 0
     assert '"stick_slip_cycle"' in capsys.readouterr().out
     assert main(["export", "pad.nc"]) == 0

@@ -382,6 +382,17 @@ def test_what_cannot_be_drawn(wall):
         fm.plot_curves(many)
 
 
+def test_the_command_draws_some_of_many_curves(tmp_path, capsys):
+    many = fm.curves(fm.System(), [0.5, 1.5], np.linspace(0.1, 0.7, 13), quantities=["amplitude"])
+    path, picture = tmp_path / "many.nc", tmp_path / "many.png"
+    write(many, path)
+    assert cli.main(["plot", str(path), "-o", str(picture)]) == 0
+    said = f"wrote {picture} with 6 of 13 friction ratios; --beta chooses others\n"
+    assert capsys.readouterr().out == said
+    assert cli.main(["plot", str(path), "-o", str(tmp_path / "one.png"), "--beta", "0.1,0.7"]) == 0
+    assert capsys.readouterr().out == f"wrote {tmp_path / 'one.png'}\n"
+
+
 @pytest.mark.parametrize("ending", plot.FORMATS)
 def test_files_of_curves_are_drawn_of_what_they_hold(wall, tmp_path, ending):
     """What is read for the picture is enough for it, to the pixel."""

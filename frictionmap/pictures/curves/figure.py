@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Unpack
 
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -47,6 +48,9 @@ CURVE_VARIABLES = frozenset(
 #: Largest number of lines in a picture that can be distinguished.
 _MOST_LINES = 12
 
+#: Number of lines drawn of more of them.
+_FEW_LINES = 6
+
 
 def _quantity(ds: xr.Dataset, asked: str | None) -> str:
     """Quantity to draw: the requested one if present, or the first one present."""
@@ -66,6 +70,15 @@ def _check_lines(family: Family) -> None:
             f"a dataset must have at most {_MOST_LINES} {name} for its curves to be drawn; got "
             f"{len(family.labels)}: draw some of them with frictionmap.plot_curves(ds.sel({name}=[...]))"
         )
+
+
+def few_curves(ds: xr.Dataset) -> tuple[xr.Dataset, str]:
+    """Curves of friction ratios spread over those of a dataset with too many to draw, and this in words."""
+    count = ds.sizes.get("beta", 1)
+    if count <= _MOST_LINES:
+        return ds, ""
+    chosen = np.linspace(0, count - 1, _FEW_LINES).round().astype(int)
+    return ds.isel(beta=chosen), f" with {_FEW_LINES} of {count} friction ratios; --beta chooses others"
 
 
 def _picture(family: Family, quantity: str, log: bool) -> Picture:

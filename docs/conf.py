@@ -17,13 +17,17 @@ author = "The frictionmap authors"
 copyright = "the frictionmap authors; MIT licence"
 version = release = frictionmap.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery"]
+extensions = [
+    "myst_parser", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon",
+    "sphinx_gallery.gen_gallery",
+]  # fmt: skip
 exclude_patterns = ["_build", "gallery/*"]
 suppress_warnings = ["config.cache"]  # the settings of the gallery cannot be pickled
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
 smartquotes = False  # keep "--set" and quotes as they are, for copying
 
+autosummary_generate = False  # `generated` writes the pages of its tables
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the docstrings give them, with shapes, units and ranges
 napoleon_google_docstring = False
@@ -52,7 +56,8 @@ html_title = f"frictionmap {release}"
 html_theme_options = {"navigation_with_keys": True}
 html_show_sphinx = False
 html_copy_source = False
-html_static_path: list[str] = []
+html_static_path = ["static"]
+html_css_files = ["print.css"]
 
 html_math_renderer = "mathml"
 
@@ -73,3 +78,17 @@ def setup(app: object) -> None:
         return visit, None
 
     app.add_html_math_renderer("mathml", show("inline"), show("block"))
+    app.connect("html-page-context", _accessible, priority=900)  # once the theme has made its navigation
+
+
+def _accessible(app: object, page: str, template: str, context: dict, doctree: object) -> None:
+    """Let the keyboard scroll what is wider than a small window; give captions of the contents a level."""
+    for part in ("body", "furo_navigation_tree"):
+        text = context.get(part) or ""
+        for before, after in (
+            ("<pre>", '<pre tabindex="0">'),
+            ('<div class="table-wrapper', '<div tabindex="0" class="table-wrapper'),
+            (' role="heading"', ' role="heading" aria-level="2"'),
+        ):
+            text = text.replace(before, after)
+        context[part] = text

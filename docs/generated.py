@@ -19,38 +19,44 @@ from frictionmap.identify.rigs.keys import rig_keys
 
 HERE = Path(__file__).resolve().parent
 
-#: The public names, grouped by purpose; a name in none of these groups is added to the last one.
+#: Public names by what readers do; a name with a dot at its end is all of a module.
 _GROUPS: Mapping[str, tuple[str, ...]] = {
-    "Systems and settings": (
+    "Structures, contacts and loads": (
         "System", "Contact", "FrictionLaw", "NormalForce", "Spring", "PeriodicLoad", "Modes", "Beam", "Plate",
-        "Solver", "Units", "load_config",
+        "ring", "Units", "system_in_units",
     ),
-    "Maps, curves, motions": (
-        "sweep", "boundaries", "borders", "curves", "response", "continuous_motion", "shares",
-        "history", "spectrum", "stationary",
-    ),
+    "Maps": ("sweep", "boundaries", "borders", "shares", "Solver"),
+    "Responses": ("response", "curves", "continuous_motion"),
+    "Features that need no map": ("features.",),
+    "Records and motions in time": ("Record", "history", "spectrum", "stationary"),
+    "Design": ("design.",),
+    "Identification from measured data": ("identify.",),
     "Pictures": (
         "plot_regimes", "plot_quantity", "plot_boundaries", "plot_curves", "plot_response", "plot_orbit",
         "plot_history", "plot_energies", "plot_spectrum", "plot_incremental", "plot_fit", "plot_shares",
-        "plot_forces", "plot_design", "plot_modes", "plot_structure", "animate", "explore",
+        "plot_forces", "plot_design", "plot_modes", "plot_structure", "plot_belt", "plot_belt_motion",
+        "animate", "explore",
     ),
-    "Errors, and others": ("InputError", "NoSteadyState"),
+    "Files, codes and errors": ("load_config", "open", "regimes.", "InputError", "NoSteadyState"),
 }  # fmt: skip
 
 
 def write(folder: Path) -> None:
     """Write the pages that have changed; unchanged files are not built again."""
-    folder.mkdir(exist_ok=True)
     pages = {
         "commands.md": commands(),
         "configuration.md": configuration(),
         "variables.md": variables(),
         "api.rst": api(),
+        "codes.rst": codes(),
         "citation.bib": citation(),
+        "paper.md": paper(),
+        **{f"api/frictionmap.{name}.rst": api_page(name) for name in public_names()},
     }
     for name, lines in pages.items():
         text = "\n".join(lines) + "\n"
         path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
 
@@ -87,6 +93,42 @@ def citation() -> Iterator[str]:
     yield f"  school = {{{_cited(thesis, 'name')}}},"
     yield f"  year   = {{{_cited(thesis, 'year')}}}"
     yield "}"
+
+
+# paper
+
+
+def paper() -> Iterator[str]:
+    """The paper of the folder paper, in the form of the manual: its citations lead to the bibliography."""
+    folder = HERE.parent / "paper"
+    _, head, text = (folder / "paper.md").read_text(encoding="utf-8").split("---\n", 2)
+    names = dict(_short_citations((folder / "paper.bib").read_text(encoding="utf-8")))
+    (title,) = re.findall(r"^title: '(.*)'$", head, re.MULTILINE)
+
+    def cited(found: re.Match[str]) -> str:
+        keys = [key.strip().removeprefix("@") for key in found[1].split(";")]
+        return f"([{'; '.join(names[key] for key in keys)}](../bibliography.md))"
+
+    text = re.sub(r"\[(@[^\]]+)\]", cited, text.replace("](map.png)", "](../../paper/map.png)"))
+    text = text.replace("](../benchmarks/", "](../../benchmarks/")
+    labels = re.findall(r"\\label\{(.*?)\}", text)
+    text = re.sub(r"\\label\{.*?\}", "", text)
+    for number, label in enumerate(labels, start=1):
+        text = text.replace(rf"\autoref{{{label}}}", f"figure {number}")
+    yield f"# {title}\n"
+    yield re.sub(r"^# ", "## ", text.partition("# References")[0].strip(), flags=re.MULTILINE)
+
+
+def _short_citations(entries: str) -> Iterator[tuple[str, str]]:
+    """Keys of BibTeX entries, and their first author with the year."""
+    for entry in entries.split("\n@"):
+        key, authors, year = (
+            re.findall(pattern, entry)[0]
+            for pattern in (r"\{(.+?),", r"author = \{(.+?)\},", r"year = \{(\d+)\}")
+        )
+        families = [name.partition(",")[0].replace("\\'a", "á") for name in authors.split(" and ")]
+        named = " and ".join(families) if len(families) < 3 else f"{families[0]} and others"
+        yield key, f"{named} {year}"
 
 
 # commands
@@ -178,37 +220,55 @@ def _with_unit(label: Label) -> str:
 # API
 
 
+def _in_group(names: Iterable[str]) -> Iterator[str]:
+    """Names of a group, those of a module in place of its name with a dot."""
+    for name in names:
+        if not name.endswith("."):
+            yield name
+            continue
+        found = getattr(fm, name.removesuffix("."))
+        yield from (f"{name}{one}" for one in found.__all__ if callable(getattr(found, one)))
+
+
+def public_names() -> list[str]:
+    """Public functions and classes, such as "sweep" and "design.stuck", in the order of the groups."""
+    return [name for names in _GROUPS.values() for name in _in_group(names)]
+
+
 def api() -> Iterator[str]:
-    """Page of the public names with their docstrings."""
+    """Page with a table of the public names for each group; every name has a page of its own."""
     yield "Python API\n==========\n\n``import frictionmap as fm``"
-    named = [name for names in _GROUPS.values() for name in names]
-    public = [
-        name
-        for name in fm.__all__
-        if name not in ("__version__", "design", "features", "identify", "regimes")
-    ]
-    others = [name for name in public if name not in named]
     for title, names in _GROUPS.items():
-        yield f"\n{title}\n{'-' * len(title)}\n"
-        last = title == list(_GROUPS)[-1]
-        for name in (*names, *(others if last else ())):
-            if name in public:
-                yield _documented("frictionmap", name)
-    for module in ("design", "features", "identify"):
-        yield f"\nfrictionmap.{module}\n{'-' * (12 + len(module))}\n"
-        yield f".. automodule:: frictionmap.{module}\n   :no-members:\n" if module == "features" else ""
-        for name in _public(module):
-            yield _documented(f"frictionmap.{module}", name)
-    title = "ds.frictionmap"
-    yield f"\n{title}\n{'-' * len(title)}\n"
-    yield ".. autoclass:: frictionmap.accessor.FrictionAccessor\n   :members:\n"
-    yield from _codes()
+        yield from _heading(title)
+        yield ".. autosummary::\n   :toctree: api\n   :nosignatures:\n"
+        yield from (f"   ~frictionmap.{name}" for name in _in_group(names))
+    yield ""
+    yield "Codes of regimes and causes, with their constants: :doc:`codes`."
+    yield from _heading("ds.frictionmap")
+    yield ".. autoclass:: frictionmap.accessor.FrictionAccessor\n   :members:"
 
 
-def _codes() -> Iterator[str]:
+def _heading(title: str, line: str = "-") -> Iterator[str]:
+    yield f"\n{title}\n{line * len(title)}\n"
+
+
+def api_page(name: str) -> Iterator[str]:
+    """Page of one public function or class."""
+    value: object = fm
+    for part in name.split("."):
+        value = getattr(value, part)
+    kind = "function"
+    if isinstance(value, type):
+        kind = "exception" if issubclass(value, Exception) else "class"
+    yield from _heading(f"fm.{name}", "=")
+    yield f".. auto{kind}:: frictionmap.{name}"
+    yield "   :members:" if kind == "class" else ""
+
+
+def codes() -> Iterator[str]:
     """Tables of the constants of `frictionmap.regimes`, one per coded variable."""
     title = "frictionmap.regimes"
-    yield f"\n{title}\n{'-' * len(title)}\n"
+    yield from _heading(title, "=")
     yield f".. automodule:: {title}\n   :no-members:\n"
     for variable, table in (
         ("regime", regimes.BELT_REGIMES), ("origin", regimes.ORIGINS), ("status", regimes.STATUSES),
@@ -220,25 +280,3 @@ def _codes() -> Iterator[str]:
         for code in table:
             yield f"   * - {code.name.upper()}\n     - {code.value}\n     - {code.meaning}"
         yield ""
-    for name in ("regime_name", "status_meaning"):
-        yield _documented(title, name)
-
-
-def _public(module: str) -> list[str]:
-    found = getattr(fm, module)
-    if hasattr(found, "__all__"):
-        return list(found.__all__)
-    own = vars(found).items()
-    return [
-        name
-        for name, value in own
-        if callable(value) and not name.startswith("_") and getattr(value, "__module__", "") == found.__name__
-    ]
-
-
-def _documented(module: str, name: str) -> str:
-    kind = "class" if name[0].isupper() else "function"
-    if name in ("InputError", "NoSteadyState"):
-        kind = "exception"
-    members = "   :members:\n" if kind == "class" else ""
-    return f".. auto{kind}:: {module}.{name}\n{members}"

@@ -10,6 +10,16 @@ class InputError(ValueError):
     InputError(message), or InputError(where, problem), or InputError(lead, where, problem): `where` is the
     argument or key that the message is about, and `lead` the words before it.  Callers that know it by
     another name rename it: `InputError("mu", "must be >= 1; got 0").renamed("grid.mu")`.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> try:
+    ...     fm.System(damping_ratios=-0.1)
+    ... except fm.InputError as error:
+    ...     print(error)
+    ...
+    damping_ratios must be >= 0; got -0.1
     """
 
     def __init__(self, *parts: str) -> None:
@@ -33,7 +43,20 @@ def naming(place: object) -> Iterator[None]:
 
 
 class NoSteadyState(RuntimeError):
-    """A requested steady state does not exist, or was not found."""
+    """A requested steady state does not exist, or was not found.
+
+    Examples
+    --------
+    Without damping, friction below pi/4 does not limit the vibration at resonance:
+
+    >>> import frictionmap as fm
+    >>> try:
+    ...     fm.response(fm.System(), r=1.0, beta=0.5)
+    ... except fm.NoSteadyState as error:
+    ...     print(error)
+    ...
+    r = 1, beta = 0.5, mu = 1: an undamped resonance; the motion grows without bound
+    """
 
 
 def nearest(word: str, valid: Iterable[str], cutoff: float = 0.5) -> str:

@@ -47,7 +47,16 @@ _ONE_PHASE = 1e-14
 
 
 class HighFrequency(NamedTuple):
-    """Boundaries in the limit r -> infinity; infinite where they grow without bound."""
+    """Boundaries in the limit r -> infinity; infinite where they grow without bound.
+
+    Examples
+    --------
+    With a wall that moves with the base both boundaries grow without bound:
+
+    >>> import frictionmap as fm
+    >>> fm.features.high_frequency_limits(fm.System(excitation="base", contact="joined-base-wall"))
+    HighFrequency(beta_lim=inf, beta_stick=inf)
+    """
 
     beta_lim: float
     beta_stick: float
@@ -58,6 +67,15 @@ def peak_thresholds(system: System) -> np.ndarray:
 
     (pi/4)|lambda_i/chi_i| without damping; with damping T(7.62), which is approximate.  Infinite for a mode
     that does not participate; NaN for a mode that C couples to others.
+
+    Examples
+    --------
+    Without damping the peak of one mass is infinite below beta = pi/4, as Den Hartog found:
+
+    >>> import numpy as np
+    >>> import frictionmap as fm
+    >>> fm.features.peak_thresholds(fm.System()) / (np.pi / 4)
+    array([1.])
     """
     refuse_general(system, "compute peak thresholds")
     modes = system.modes
@@ -75,6 +93,14 @@ def peak_amplitudes(system: System, beta: float) -> np.ndarray:
 
     It decreases linearly with beta, to 0 at the `peak_thresholds` of the mode; at and above it the motion is
     not continuous and the value is NaN.  Infinite without damping; NaN for a mode that C couples to others.
+
+    Examples
+    --------
+    Without friction the amplitude at resonance is 1/(2 zeta):
+
+    >>> import frictionmap as fm
+    >>> fm.features.peak_amplitudes(fm.System(damping_ratios=0.05), beta=0.0)
+    array([[10.]])
     """
     refuse_general(system, "compute peak amplitudes")
     beta = checks.number(beta, "beta", least=0.0)
@@ -92,6 +118,15 @@ def high_frequency_limits(system: System, mu: float = 1.0) -> HighFrequency:
 
     Zero if the load does not act on a mass in contact.  With a joined base-wall they grow with r^2, with
     dashpots to the base with r.
+
+    Examples
+    --------
+    For one mass on a fixed wall they are 2/sqrt(4 + pi^2) and 1:
+
+    >>> import frictionmap as fm
+    >>> limits = fm.features.high_frequency_limits(fm.System(), mu=1.0)
+    >>> round(limits.beta_lim, 6), limits.beta_stick
+    (0.537029, 1.0)
     """
     refuse_general(system, "compute high-frequency limits")
     mu = checks.number(mu, "mu", least=1.0)
@@ -110,6 +145,14 @@ def quasi_static_displacement(system: System, beta: float) -> np.ndarray:
 
     They are the displacements at tau = 0, where the load equals the real part of its phasor, with the contact
     sliding towards larger z.  The contact sticks instead unless beta is below beta_stick at r = 0.
+
+    Examples
+    --------
+    One mass: the load less the friction, 1 - beta.
+
+    >>> import frictionmap as fm
+    >>> fm.features.quasi_static_displacement(fm.System(), beta=0.25)
+    array([0.75])
     """
     refuse_general(system, "compute the quasi-static displacement")
     beta = checks.number(beta, "beta", least=0.0)
@@ -183,6 +226,12 @@ def invariant_points(system: System, low: float, high: float, most: int = MOST_P
     Without damping, amplitude and phase of z are there the same as without friction, and all such points are
     found: between two of its poles U falls from +inf to -inf once.  With damping only the phase is unchanged.
     Of more than about `most` points the highest are returned.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> fm.features.invariant_points(fm.System(), 0.2, 2.0).round(9)
+    array([0.25, 0.5 ])
     """
     refuse_general(system, "compute invariant points")
     modes = system.modes
@@ -199,7 +248,15 @@ def _real_load(modes: ModalModel) -> np.ndarray:
 
 
 def one_phase(system: System) -> bool:
-    """Whether all loads are in phase or in opposition; otherwise no amplitude is invariant."""
+    """Whether all loads are in phase or in opposition; otherwise no amplitude is invariant.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> pair = {"mass_ratios": [1, 1], "stiffness_ratios": [1, 1]}
+    >>> [fm.features.one_phase(fm.System(load=load, **pair)) for load in ([1, -1], [1, 1j])]
+    [True, False]
+    """
     turned = _real_load(system.modes)
     return bool(np.all(np.abs(turned.imag) <= _ONE_PHASE * np.abs(turned)))
 
@@ -265,7 +322,15 @@ def _motions(modes: ModalModel) -> _Motions:
 def all_mass_invariant_points(
     system: System, low: float, high: float, most: int = MOST_POINTS
 ) -> list[np.ndarray]:
-    """Find the `mass_invariant_points` of every mass, at about the cost of one mass."""
+    """Find the `mass_invariant_points` of every mass, at about the cost of one mass.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> pair = fm.System(contact_masses=[2], mass_ratios=[1, 1], stiffness_ratios=[1, 1])
+    >>> [points.round(6).tolist() for points in fm.features.all_mass_invariant_points(pair, 0.5, 2.0)]
+    [[0.527585, 0.551958, 0.828219, 1.549362], [0.543048, 1.449813]]
+    """
     refuse_general(system, "compute invariant points")
     modes = _undamped(system)
     where = _range(modes, low, high, most)
@@ -299,6 +364,13 @@ def mass_invariant_points(
     they are the limits for beta -> 0 of the `inversion_points` of the exact amplitude.  For a mass in contact
     with a fixed wall they are the `invariant_points`.  Damping is neglected: with damping the points are
     approximate, T 7.4.3.  All loads must be in phase.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> pair = fm.System(contact_masses=[2], mass_ratios=[1, 1], stiffness_ratios=[1, 1])
+    >>> fm.features.mass_invariant_points(pair, 1, 0.5, 2.0).round(6)
+    array([0.527585, 0.551958, 0.828219, 1.549362])
     """
     refuse_general(system, "compute invariant points")
     mass = system.dofs.number(mass, "mass")
@@ -306,7 +378,16 @@ def mass_invariant_points(
 
 
 class FirstHarmonicPoints(NamedTuple):
-    """Frequency ratios where friction does not change a first harmonic; increasing."""
+    """Frequency ratios where friction does not change a first harmonic; increasing.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> pair = fm.System(contact_masses=[2], mass_ratios=[1, 1], stiffness_ratios=[1, 1])
+    >>> (first, *_) = fm.features.first_harmonic_points(pair, 0.5, 2.0)
+    >>> first.unchanged.round(6), first.inversions.round(6)
+    (array([], dtype=float64), array([0.545895, 0.822806, 1.549463]))
+    """
 
     unchanged: np.ndarray  # where amplitude and phase are unchanged
     inversions: (
@@ -328,6 +409,16 @@ def first_harmonic_points(
     A_k = sum phi_ki chi_i/(w_i^2 - r^2): where it is zero, amplitude and phase are unchanged.  Furthermore
     abs(X_k1)^2 = V_k^2 + (8 beta^2/pi) A_k (V_k U/V + 2 A_k/pi) for every beta: where the bracket is zero,
     the amplitude is unchanged.  Damping is neglected; all loads must be in phase.
+
+    Examples
+    --------
+    Points of mass 1, of mass 2 and of the contact where amplitude and phase are unchanged:
+
+    >>> import frictionmap as fm
+    >>> pair = fm.System(contact_masses=[2], mass_ratios=[1, 1], stiffness_ratios=[1, 1])
+    >>> points = fm.features.first_harmonic_points(pair, 0.5, 2.0)
+    >>> [one.unchanged.round(6).tolist() for one in points]
+    [[], [1.414214], [1.414214]]
     """
     refuse_general(system, "compute invariant points")
     modes = _undamped(system)
@@ -354,7 +445,15 @@ def first_harmonic_points(
 def first_harmonic_invariant_points(
     system: System, mass: int, low: float, high: float, most: int = MOST_POINTS
 ) -> np.ndarray:
-    """All `first_harmonic_points` of one mass, the inversion points of frequency-based curves of T 4.4."""
+    """All `first_harmonic_points` of one mass, the inversion points of frequency-based curves of T 4.4.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> pair = fm.System(contact_masses=[2], mass_ratios=[1, 1], stiffness_ratios=[1, 1])
+    >>> fm.features.first_harmonic_invariant_points(pair, 1, 0.5, 2.0).round(6)
+    array([0.545895, 0.822806, 1.549463])
+    """
     refuse_general(system, "compute invariant points")
     mass = system.dofs.number(mass, "mass")
     return first_harmonic_points(system, low, high, most)[system.dofs.row(mass)].all

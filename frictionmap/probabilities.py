@@ -53,6 +53,16 @@ def shares(ds: xr.Dataset, over: str, quantiles: Sequence[float] = (0.05, 0.5, 0
     ------
     InputError
         There is no such axis, there is another one, no regime, or no sample that is finished.
+
+    Examples
+    --------
+    With more damping the contact begins to stop:
+
+    >>> import frictionmap as fm
+    >>> maps = fm.sweep(fm.System(), [0.8], [0.7], axes={"damping_ratios": [0.0, 0.05, 0.1, 0.5]})
+    >>> found = fm.shares(maps, over="damping_ratios").regime_share.squeeze()
+    >>> dict(zip(found.outcome.values.tolist(), found.values.tolist()))
+    {'unresolved': 0.0, 'permanent_sticking': 0.0, 'stick_slip': 0.5, 'continuous': 0.5}
     """
     if not isinstance(ds, xr.Dataset):
         raise InputError(f"ds must be an xarray.Dataset; got {type(ds).__name__}")

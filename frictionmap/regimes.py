@@ -261,13 +261,26 @@ def _code(codes: tuple[Code, ...], value: int, what: str) -> Code:
 
 
 def regime_name(regime: int) -> str:
-    """Name of a regime code, such as "stick_slip" of 1."""
+    """Name of a regime code, such as "stick_slip" of 1.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> fm.regimes.regime_name(fm.regimes.STICK_SLIP)
+    'stick_slip'
+    """
     return _code((*BELT_REGIMES, *NO_LOAD_REGIMES[1:]), regime, "regime").name
 
 
 def status_meaning(status: int) -> str:
     """Cause that a status code stands for, and what to do about it; of belts without a load, if only these
     have it.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> fm.regimes.status_meaning(fm.regimes.NOT_REACHED)
+    'no steady state within `cycles` excitation periods: raise solver.cycles'
     """
     further = tuple(code for code in BELT_STATUSES if code.value not in {one.value for one in STATUSES})
     return _code((*STATUSES, *further), status, "status").meaning

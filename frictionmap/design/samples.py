@@ -34,6 +34,17 @@ class Samples:
     ------
     InputError
         The quantile is out of range.
+
+    Examples
+    --------
+    The structure with the least damping decides:
+
+    >>> import frictionmap as fm
+    >>> samples = fm.design.Samples({"damping_ratios": [0.01, 0.02, 0.03]}, quantile=1.0)
+    >>> pair = fm.System(contact_masses=[2], mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.02)
+    >>> ds = fm.design.least_peak(pair, band=[0.3, 2.2], spread=samples)
+    >>> int(ds.peak_of_sample.argmax("sample").squeeze())
+    0
     """
 
     axes: Mapping[str, Any] | Variations

@@ -118,6 +118,18 @@ def load_config(path: str | Path, overrides: Sequence[str] = (), room: Room | No
     InputError
         The file cannot be read or is not TOML; a key is unknown, missing, of the wrong type or out of
         range.  The message names the key.
+
+    Examples
+    --------
+    >>> import os
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import frictionmap as fm
+    >>> path = Path(tempfile.mkdtemp()) / "map.toml"
+    >>> lines = ["[system]", "[grid]", "r = { start = 0.0, stop = 2.0, step = 0.1 }", "beta = [0.2, 0.4]"]
+    >>> _ = path.write_text(os.linesep.join(lines))
+    >>> fm.load_config(path, ["grid.r.step=0.5"]).r
+    array([0. , 0.5, 1. , 1.5, 2. ])
     """
     tree, text = read_tree(path, overrides)
     files = put_variants(tree.get("axes"), Path(path).parent)

@@ -31,9 +31,13 @@ def open(path: str | Path) -> xr.Dataset:  # fm.open
 
     Examples
     --------
+    >>> import tempfile
+    >>> from pathlib import Path
     >>> import frictionmap as fm
-    >>> ds = fm.open("map.nc")  # doctest: +SKIP
-    >>> ds.frictionmap.labels  # doctest: +SKIP
+    >>> path = Path(tempfile.mkdtemp()) / "map.nc"
+    >>> fm.sweep(fm.System(), r=[0.3], beta=[0.01, 0.5, 1.0]).to_netcdf(path)
+    >>> fm.open(path).frictionmap.labels.values.ravel().tolist()
+    ['continuous', 'stick-slip', 'permanent-sticking']
     """
     if not isinstance(path, (str, Path)):
         raise InputError("path", f"must be the path of a file or store; got {checks.one_line(path)}")

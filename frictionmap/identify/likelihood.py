@@ -72,6 +72,22 @@ def log_likelihood(ds: xr.Dataset) -> LogLikelihood:
     ------
     InputError
         The dataset is of another kind, or lacks a variable.
+
+    Examples
+    --------
+    It is largest at the estimates:
+
+    >>> import numpy as np
+    >>> import frictionmap as fm
+    >>> t = np.arange(0.0, 4.0, 0.01)
+    >>> n = np.floor(2 * t)  # half cycles
+    >>> x = (9.5 - (2 * n + 1) * 0.5) * np.cos(2 * np.pi * t) + (-1) ** n * 0.5
+    >>> x += np.random.default_rng(1).normal(0.0, 0.02, t.size)
+    >>> fit = fm.identify.free_decay(t, x, known={"zeta": 0.0})
+    >>> likelihood = fm.identify.log_likelihood(fit)
+    >>> theta = [float(fit.estimate.sel(parameter=name)) for name in likelihood.names]
+    >>> bool(likelihood(theta) > likelihood([1.001 * theta[0], *theta[1:]]))
+    True
     """
     if not isinstance(ds, xr.Dataset):
         raise InputError(f"ds must be a dataset of estimates; got {checks.one_line(ds)}")

@@ -83,6 +83,17 @@ class Contact(Shown):
     ------
     InputError
         A value has the wrong type or is out of range, or two exclude each other.
+
+    Examples
+    --------
+    A damper with a spring of half the stiffness k_1 in series with its slider slips with little friction
+    only:
+
+    >>> import frictionmap as fm
+    >>> damper = fm.Contact(masses=[2], stiffness=0.5)
+    >>> frame = fm.System(contacts=[damper], mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.01)
+    >>> fm.sweep(frame, r=[0.6], beta=[0.1, 5.0]).slips_per_cycle.values.ravel()
+    array([2., 0.], dtype=float32)
     """
 
     kind: Literal["fixed-wall", "joined-base-wall", "between-masses"] = "fixed-wall"

@@ -121,6 +121,16 @@ class FrictionLaw(Shown):
     ------
     InputError
         A value has the wrong type or is out of range.
+
+    Examples
+    --------
+    Friction that falls by 40 % up to the speed omega_1 P/k_1, and is constant beyond it:
+
+    >>> import frictionmap as fm
+    >>> law = fm.FrictionLaw(speed=[0.0, 1.0], factor=[1.0, 0.6])
+    >>> system = fm.System(contacts=[fm.Contact(law=law)], damping_ratios=0.05)
+    >>> fm.sweep(system, r=[0.6], beta=[0.1]).frictionmap.labels.item()
+    'continuous'
     """
 
     speed: Sequence[float] = (0.0,)

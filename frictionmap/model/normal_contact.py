@@ -36,7 +36,7 @@ class MovingNormal:
 
 @dataclass(frozen=True, repr=False)
 class NormalForce(Shown):
-    """The keys `normal` of a contact.
+    """Normal force of a contact that follows the structure: its key `normal`.
 
     Parameters
     ----------
@@ -59,6 +59,20 @@ class NormalForce(Shown):
     ------
     InputError
         A value has the wrong type or is out of range, or two exclude each other.
+
+    Examples
+    --------
+    Mass 2 presses the contact of mass 1, which opens in every cycle: its least normal force is 0.
+
+    >>> import frictionmap as fm
+    >>> wedge = fm.NormalForce(mass=2, stiffness=1.0, friction=0.3, preload=1.0)
+    >>> pair = fm.System(
+    ...     contacts=[fm.Contact(masses=[1], normal=wedge)],
+    ...     mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.05,
+    ... )
+    >>> ds = fm.sweep(pair, r=[0.8], beta=[0.3], outputs=["regime", "normal_force_min"])
+    >>> ds.normal_force_min.values.ravel().round(4)
+    array([0.])
     """
 
     mass: int | str | None = None

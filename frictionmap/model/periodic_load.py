@@ -48,6 +48,15 @@ class PeriodicLoad(Shown):
         Its constant part, which moves positions only.
     cut_off : float
         Root mean square of what higher harmonics would add.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import frictionmap as fm
+    >>> t = np.arange(256) / 256
+    >>> load = fm.PeriodicLoad.from_samples(t, 3 * np.cos(2 * np.pi * t) + np.cos(6 * np.pi * t), harmonics=3)
+    >>> {n: complex(np.round(p, 9)) for n, p in load.harmonics.items()}
+    {1: (3-0j), 3: (1-0j)}
     """
 
     harmonics: Mapping[int, complex]

@@ -76,6 +76,24 @@ def ring(**keys: Any) -> System:
     ------
     InputError
         A key is missing, unknown, or does not fit to sectors.
+
+    Examples
+    --------
+    Six blades on springs of their own, coupled by softer ones, that rub on each other:
+
+    >>> import frictionmap as fm
+    >>> blades = fm.ring(
+    ...     sectors={
+    ...         "count": 6,
+    ...         "mass": [[1.0]],
+    ...         "stiffness": [[1.0]],
+    ...         "coupling": [{"masses": [1, 1], "stiffness": 0.1}],
+    ...     },
+    ...     contacts=[fm.Contact("between-masses", [1, "next.1"])],
+    ...     damping_ratios=0.01,
+    ... )
+    >>> blades.n, len(blades.contacts)
+    (6, 6)
     """
     return System(**in_full(keys))
 

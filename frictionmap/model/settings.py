@@ -169,6 +169,13 @@ class Solver(Shown):
     ------
     InputError
         A setting is out of range.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> solver = fm.Solver(start="moving", outputs=["regime", "amplitude"])
+    >>> sorted(fm.sweep(fm.System(), [0.3], [0.5], solver=solver).data_vars)
+    ['amplitude', 'beta_lim', 'beta_stick', 'regime']
     """
 
     start: Start = "rest"

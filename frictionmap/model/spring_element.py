@@ -79,6 +79,16 @@ class Spring(Shown):
     ------
     InputError
         A value has the wrong type or is out of range, or two exclude each other.
+
+    Examples
+    --------
+    A stop at the distance 2 P/k_1, which the mass reaches near its resonance only:
+
+    >>> import frictionmap as fm
+    >>> system = fm.System(springs=[fm.Spring(gap=2.0, stiffness=5.0)], damping_ratios=0.05)
+    >>> ds = fm.sweep(system, r=[0.4, 0.9], beta=[0.1], outputs=["regime", "spring_force_max"])
+    >>> (ds.spring_force_max.values.ravel() > 0).tolist()
+    [False, True]
     """
 
     masses: int | str | Sequence[int | str] = (1,)

@@ -257,6 +257,16 @@ class System(Shown):
     Dimensionless equations of motion: theory.md 1, in general 11; T(5.4), (5.8) for chains, T(2.12), (3.3)
     for one mass.  With base excitation the load is p = K ones, which is e_1 for a chain; with damping
     relative to the base i r C1 ones is added, so that p = 1 + 2 i zeta r for one mass.
+
+    Examples
+    --------
+    Two equal masses on equal springs; the second one rubs on a wall.  Natural frequencies over sqrt(k_1/m_1):
+
+    >>> import frictionmap as fm
+    >>> chain = {"mass_ratios": [1, 1], "stiffness_ratios": [1, 1]}
+    >>> frame = fm.System(contact_masses=[2], damping_ratios=0.01, **chain)
+    >>> frame.modes.w.round(6)
+    array([0.618034, 1.618034])
     """
 
     contact: Literal["fixed-wall", "joined-base-wall", "between-masses"] = "fixed-wall"

@@ -78,6 +78,17 @@ def least_median(
     ------
     InputError
         An argument has the wrong type or is out of range.
+
+    Examples
+    --------
+    The friction with which the median distance from the place of rest after three pulses is least:
+
+    >>> import frictionmap as fm
+    >>> pulses = [fm.Record([0.0, a, -a, 0.0], dt=1.0, quantity="force") for a in (0.8, 1.0, 1.3)]
+    >>> system = fm.System(damping_ratios=0.02)
+    >>> ds = fm.design.least_median(system, pulses, beta=(0.01, 0.5), quantity="residual")
+    >>> round(ds.beta.item(), 4)
+    0.0131
     """
     checks.choice(quantity, "quantity", QUANTITIES)
     quantile = checks.number(quantile, "quantile", least=0.0, most=1.0)

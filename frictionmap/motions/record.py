@@ -75,6 +75,12 @@ class Record(Shown):
     Notes
     -----
     theory.md, Motions in time.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> fm.Record([0.0, 0.3, 0.0], dt=0.1, unit="g")
+    <Record: acceleration, 3 samples over 0.2, peak 0.3 g>
     """
 
     values: Any

@@ -241,6 +241,18 @@ def stationary(
     ------
     InputError
         There is no time, a value is missing, or the time is too short for two windows.
+
+    Examples
+    --------
+    A sine has the variance 1/2 and the peak 1:
+
+    >>> import numpy as np
+    >>> import xarray as xr
+    >>> import frictionmap as fm
+    >>> time = np.linspace(0.0, 200 * np.pi, 20001)
+    >>> found = fm.stationary(xr.DataArray(np.sin(time), {"time": time}))
+    >>> round(found.variance.item(), 3), round(found.peak.item(), 3)
+    (0.5, 1.0)
     """
     if not isinstance(values, xr.DataArray) or "time" not in values.dims or "time" not in values.coords:
         raise InputError("values", f"must be a variable over time; got {checks.one_line(values)}")

@@ -90,7 +90,7 @@ def spectrum(
 
     >>> import frictionmap as fm
     >>> push = fm.Record([1.0, 1.0], dt=1.0, quantity="force", interpolation="hold")
-    >>> float(spectrum(push, float("inf"), 0.3).amplitude.squeeze().round(12))
+    >>> float(fm.spectrum(push, float("inf"), 0.3).amplitude.squeeze().round(12))
     4.666666666667
     """
     given: dict[str, Any] = {

@@ -278,6 +278,19 @@ class Plate:
     -----
     `frequency_error` is the relative change of each natural frequency with fewer functions.  It is 1e-9 or
     less of the lowest modes, or some 1e-5 with a corner of a clamped and a free edge.
+
+    Examples
+    --------
+    A square plate on simple supports has the frequencies (i^2 + j^2) pi^2:
+
+    >>> import numpy as np
+    >>> import frictionmap as fm
+    >>> plate = fm.Plate(
+    ...     edges=["supported"] * 4, size=[1.0, 1.0], bending_stiffness=1.0, mass_per_area=1.0,
+    ...     points={"centre": [0.5, 0.5]}, modes=3,
+    ... )
+    >>> (plate.frequencies / np.pi**2).round(6)
+    array([2., 5., 5.])
     """
 
     edges: Any = ("clamped", "free", "free", "free")

@@ -8,6 +8,8 @@ import sys
 
 import pytest
 from conftest import ROOT
+from pages import HANG
+from test_reference import NAMES
 
 import frictionmap as fm
 from frictionmap.command_line.arguments import described
@@ -23,7 +25,7 @@ def manual(tmp_path_factory):
     pytest.importorskip("furo")
     folder = tmp_path_factory.mktemp("manual")
     copy = folder / "docs"  # pages are made beside the others
-    for name in ("docs", "configs", "benchmarks/results", "CHANGELOG.md", "CITATION.cff"):
+    for name in ("docs", "configs", "benchmarks/results", "paper", "CHANGELOG.md", "CITATION.cff"):
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).symlink_to(ROOT / name) if name != "docs" else copy_of(ROOT / name, copy)
     done = subprocess.run(
@@ -66,15 +68,14 @@ def test_every_key_and_output_is_documented(manual):
     assert all(f">{name}<" in variables for name in (*OUTPUTS, *GENERAL_OUTPUTS))
 
 
-def test_every_public_name_is_documented(manual):
-    page = text(manual, "reference/api.html")
-    for name in set(fm.__all__) - {"__version__", "design", "features", "identify", "regimes"}:
-        assert f'id="frictionmap.{name}"' in page, name
-    for module in ("design", "identify"):
-        for name in getattr(fm, module).__all__:
-            assert f'id="frictionmap.{module}.{name}"' in page, name
+def test_every_public_name_has_a_page(manual):
+    index = text(manual, "reference/api.html")
+    for name in NAMES:
+        assert f'id="frictionmap.{name}"' in text(manual, f"reference/api/frictionmap.{name}.html"), name
+        assert f'href="api/frictionmap.{name}.html' in index, name
     constants = [name for name in fm.regimes.__all__ if isinstance(getattr(fm.regimes, name), int)]
     assert constants
+    page = text(manual, "reference/codes.html")
     for name in constants:
         assert f">{name}<" in page, name
 
@@ -128,3 +129,30 @@ def test_no_symbol_of_the_theory_is_spelled_out(manual):
 def test_no_formula_of_the_manual_is_left_as_source(manual):
     for page in manual.rglob("*.html"):
         assert "$$" not in page.read_text(encoding="utf-8"), page
+
+
+#: Sizes of windows, and pages with all that pages consist of: tables, code, formulas, pictures, signatures.
+SIZES = {"phone": (390, 844), "tablet": (820, 1180), "desktop": (1440, 900)}
+LOOKED_AT = (
+    "index",
+    "theory",
+    "guides/choosing-friction",
+    "reference/configuration",
+    "reference/api/frictionmap.sweep",
+)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_axe_finds_nothing_serious_on_a_page(browser, manual, size):
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
+    context = browser.new_context(viewport=dict(zip(("width", "height"), SIZES[size], strict=True)))
+    page = context.new_page()
+    page.set_default_timeout(1000.0 * HANG)
+    for name in LOOKED_AT:
+        page.goto((manual / f"{name}.html").as_uri())
+        found = axe.run(page).response
+        serious = [one for one in found["violations"] if one["impact"] in ("serious", "critical")]
+        assert [(one["id"], [node["target"] for node in one["nodes"]]) for one in serious] == [], name
+        assert len(found["passes"]) > 10
+        assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0, name
+    context.close()

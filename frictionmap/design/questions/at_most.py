@@ -57,6 +57,14 @@ def at_most(
         As `least_peak`; or the limit is below the least peak, which the message gives.
     NoSteadyState
         As `least_peak`.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> pair = fm.System(contact_masses=[2], mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.01)
+    >>> ds = fm.design.at_most(pair, band=[0.3, 2.2], limit=4.0)
+    >>> round(ds.interval_begin.values[0].item(), 3), round(ds.interval_end.values[0].item(), 3)
+    (0.957, 2.668)
     """
     from ..answers import peaks_answer
     from ..ranges import find_ranges

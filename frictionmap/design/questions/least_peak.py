@@ -91,7 +91,7 @@ def least_peak(
     ...     contact_masses=[2], mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.01
     ... )
     >>> ds = fm.design.least_peak(chain, band=[0.3, 2.2])
-    >>> round(ds.beta.item(), 4), round(ds.peak.values[0], 9), str(ds.kind.values)
+    >>> round(ds.beta.item(), 4), round(ds.peak.values[0].item(), 9), ds.kind.item()
     (1.4019, 2.727102937, 'smooth')
     """
     from ..answers import answer_for_samples, peaks_answer

@@ -65,6 +65,17 @@ def no_separation(
         contacts open with the most friction that is searched.
     NoSteadyState
         As `least_peak`.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> wedge = fm.NormalForce(mass=2, stiffness=1.0, friction=0.4)
+    >>> pair = fm.System(
+    ...     contacts=[fm.Contact(masses=[1], normal=wedge)],
+    ...     mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.05,
+    ... )
+    >>> ds = fm.design.no_separation(pair, band=[0.3, 2.0])  # doctest: +SKIP
+    >>> ds.preload.values  # doctest: +SKIP
     """
     from ...checks import instance
     from ..answers import answer

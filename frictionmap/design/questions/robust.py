@@ -45,6 +45,16 @@ def robust(
     largest response of each, `beta_no_stop` and `beta_stuck` hold for all samples, and the response curves
     are those of the nominal structure; `response_of_sample` is that of the sample `deciding_sample`, whose
     peak is the answer.
+
+    Examples
+    --------
+    The best friction if it may be off by 20 % to either side, and the largest amplitude in the worst case:
+
+    >>> import frictionmap as fm
+    >>> pair = fm.System(contact_masses=[2], mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.01)
+    >>> ds = fm.design.robust(pair, band=[0.3, 2.2], spread=0.2)
+    >>> round(ds.beta.item(), 3), round(ds.peak.values[0].item(), 3)
+    (1.47, 2.944)
     """
     if not isinstance(spread, Samples) and checked_spread(spread) == 0.0:
         raise InputError("spread", "must be > 0; got 0")

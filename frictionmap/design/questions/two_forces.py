@@ -62,6 +62,16 @@ def two_forces(
         An argument has the wrong type or is out of range, or the contact has a force of its own.
     NoSteadyState
         Cells of the band have no periodic steady state: the largest response may be among them.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> pair = fm.System(
+    ...     contacts=[fm.Contact(masses=[1]), fm.Contact(masses=[2])],
+    ...     mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.02,
+    ... )
+    >>> ds = fm.design.two_forces(pair, band=[0.3, 2.2], ratio=[0.5, 1.5])  # doctest: +SKIP
+    >>> ds.beta.item(), ds.second_ratio.item()  # doctest: +SKIP
     """
     from ..answers import peaks_answer
     from ..force_plane import checked_plane, find_in_plane

@@ -103,6 +103,17 @@ def sweep(
     Notes
     -----
     T(6.15) to (6.19) and Appendix A for two masses; theory.md 10.
+
+    Examples
+    --------
+    One mass with a natural frequency of 3 Hz:
+
+    >>> import numpy as np
+    >>> import frictionmap as fm
+    >>> f = np.array([1.0, 2.0, 2.5, 4.0, 5.0])
+    >>> fit = fm.identify.sweep(f, 1 / np.abs(1 - (f / 3.0) ** 2), masses=1)
+    >>> round(fit.estimate.sel(parameter="f_k1m1").item(), 6)
+    3.0
     """
     n = checks.whole(masses, "masses", least=1, most=MOST_MASSES)
     data = checked_sweep(frequency, (amplitude_ratio, phase_lag), (sigma_amplitude, sigma_phase), n)

@@ -100,6 +100,21 @@ def joint(
     Each part counts by its noise.  A record that the model does not explain down to its noise counts by its
     residual at the harmonics of the base, so that the decay prevails.  mu is 1 unless the records ask for
     more.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import frictionmap as fm
+    >>> t = np.arange(0.0, 4.0, 0.01)
+    >>> n = np.floor(2 * t)
+    >>> rng = np.random.default_rng(1)
+    >>> def decay(x_F):
+    ...     x = (9.5 - (2 * n + 1) * x_F) * np.cos(2 * np.pi * t) + (-1) ** n * x_F
+    ...     return t, x + rng.normal(0.0, 0.02, t.size)
+    ...
+    >>> fit = fm.identify.joint([decay(0.3), decay(0.5)], labels=["dry", "loaded"])
+    >>> fit.estimate.sel(parameter=["f_n", "x_F_dry", "x_F_loaded"]).values.round(2)
+    array([1. , 0.3, 0.5])
     """
     checked_unit(unit, "length", "unit")
     checks.choice(contact, "contact", CONTACTS)

@@ -107,6 +107,24 @@ def loop(
     -----
     The displacement is fitted together with the force, as its noise in a sampled model would be rectified:
     it would make the friction too large and the stiffness too small.
+
+    Examples
+    --------
+    A damper with 60 N and 150 N/mm:
+
+    >>> import numpy as np
+    >>> import frictionmap as fm
+    >>> t = np.arange(0.0, 3.0, 0.005)
+    >>> x = 1.6 * np.sin(2 * np.pi * t)
+    >>> force = [0.0]
+    >>> for step in np.diff(x):
+    ...     force.append(np.clip(force[-1] + 150.0 * step, -60.0, 60.0))
+    ...
+    >>> rng = np.random.default_rng(1)
+    >>> noisy = force + rng.normal(0.0, 0.5, t.size)
+    >>> fit = fm.identify.loop(t, noisy, displacement=x + rng.normal(0.0, 0.002, t.size))
+    >>> fit.estimate.sel(parameter=["friction", "contact_stiffness"]).values.round(0)
+    array([ 60., 150.])
     """
     test = _checked_test(time, force, displacement, velocity, law_speeds, window)
     held, named = _held(known or {}, free, test)

@@ -136,6 +136,22 @@ def forced(
     model is fitted again with a spring, a delay or a gain, and without each known value.  If one of the first
     three alone explains the data it is added, and the verdict names it.  Otherwise the verdict is
     `explained_otherwise` or `not_explained`, and the estimates must not be used.
+
+    Examples
+    --------
+    A rig with a natural frequency of 3 Hz and beta = 0.3, with noise:
+
+    >>> import numpy as np
+    >>> import frictionmap as fm
+    >>> rig = fm.System(excitation="base", damping_reference="base", damping_ratios=0.01)
+    >>> r = np.array([0.6, 0.75, 0.9, 0.97, 1.03, 1.1, 1.3, 1.6])
+    >>> ds = fm.curves(rig, r, [0.3], quantities=["first_harmonic"]).squeeze()
+    >>> rng = np.random.default_rng(1)
+    >>> lags = np.degrees(ds.first_harmonic_phase.values) + rng.normal(0.0, 0.5, r.size)
+    >>> ratios = ds.first_harmonic_amplitude.values * rng.normal(1.0, 0.01, r.size)
+    >>> fit = fm.identify.forced(3.0 * r, lags, ratios)
+    >>> fit.estimate.sel(parameter=["f_n", "beta"]).values.round(2)
+    array([3. , 0.3])
     """
     system = _default_system() if system is None else checks.instance(system, "system", System)
     system, given = _without_spring(system, known or {})

@@ -70,6 +70,16 @@ def displacements(
     InputError
         An argument is invalid, a velocity or acceleration is clipped; fewer than 2 cycles or 8 samples per
         cycle.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import frictionmap as fm
+    >>> t = np.arange(0.0, 4.0, 0.001)
+    >>> sine = np.sin(2 * np.pi * t)
+    >>> found = fm.identify.displacements(t, sine, -((2 * np.pi) ** 2) * sine, x_unit="mm/s^2")
+    >>> bool(np.allclose(found.x, sine, atol=1e-3))
+    True
     """
     times, places = checked_record(time, x)
     channels = [checked_record(times, base, "base")[1], places]

@@ -144,6 +144,22 @@ def record(
 
     Of a contact with a spring mu is 1.  Where the record excludes small stiffnesses only, `upper` is
     infinite, the standard error NaN, and a warning says so.  An estimate on its bound is a rigid contact.
+
+    Examples
+    --------
+    A rig at 3 Hz whose friction is 0.4 times 1.75 mm, and its steady motion with noise:
+
+    >>> import numpy as np
+    >>> import frictionmap as fm
+    >>> rig = fm.System(excitation="base", damping_reference="base", damping_ratios=0.01)
+    >>> cycle = fm.response(rig, 0.5, 0.4, points=100).isel(tau=slice(0, -1))
+    >>> rng = np.random.default_rng(1)
+    >>> t = np.arange(800) / 150.0  # 8 cycles at 1.5 Hz, half of the natural frequency
+    >>> base = 1.75 * np.tile(np.cos(cycle.tau.values), 8) + rng.normal(0.0, 0.003, 800)
+    >>> x = 1.75 * np.tile(cycle.x.values[0], 8) + rng.normal(0.0, 0.01, 800)
+    >>> fit = fm.identify.record(t, base, x)
+    >>> fit.estimate.sel(parameter=["f_n", "x_F"]).values.round(2)
+    array([3.01, 0.69])
     """
     checked_unit(unit, "length", "unit")
     checks.choice(contact, "contact", CONTACTS)

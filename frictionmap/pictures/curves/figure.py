@@ -138,6 +138,14 @@ def plot_curves(
     InputError
         The dataset does not contain the quantity, or has too many lines, or the number of axes differs from
         that of the panels.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.curves(fm.System(), r=[0.4, 0.8, 1.2], beta=[0.1, 0.5])
+    >>> axes = fm.plot_curves(ds)
+    >>> [ax.get_ylabel() for ax in axes.flat]
+    ['amplitude / $(P/k_1)$', 'phase lag [°]']
     """
     ds = to_draw(ds, "plot_curves", "curves", "map")
     quantity = _quantity(ds, quantity)

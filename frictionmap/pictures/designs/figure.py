@@ -70,6 +70,14 @@ def plot_design(
     ------
     InputError
         The dataset is not an answer or lacks a variable to draw, or the number of axes is wrong.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.design.no_stop(fm.System(damping_ratios=0.02), band=[0.8, 1.2])
+    >>> axes = fm.plot_design(ds)
+    >>> [ax.get_xlabel() for ax in axes.flat]
+    ['frequency ratio $r$']
     """
     ds = to_draw(ds, "plot_design", "design")
     check_holds(ds, ("question", "beta"), "its answer")

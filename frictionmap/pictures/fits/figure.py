@@ -60,6 +60,19 @@ def plot_fit(
     InputError
         The dataset holds no estimates, or lacks a variable to draw, or there are more or fewer axes than
         panels.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 4.0, 0.01)
+    >>> n = np.floor(2 * t)
+    >>> x = (9.5 - (2 * n + 1) * 0.5) * np.cos(2 * np.pi * t) + (-1) ** n * 0.5
+    >>> noise = np.random.default_rng(1).normal(0.0, 0.02, t.size)
+    >>> ds = fm.identify.free_decay(t, x + noise)
+    >>> axes = fm.plot_fit(ds)
+    >>> [ax.get_ylabel() for ax in axes.flat]
+    ['displacement [mm]', 'residual [mm]']
     """
     ds = to_draw(ds, "plot_fit", "estimates")
     names = ("data", "model", "residual")

@@ -114,6 +114,16 @@ def plot_belt(ds: xr.Dataset, **options: Unpack[FigureOptions]) -> "AxesArray":
     ------
     InputError
         The dataset has no cells.
+
+    Examples
+    --------
+    One panel for each mu:
+
+    >>> import frictionmap as fm
+    >>> belt = fm.System(damping_ratios=0.05)
+    >>> ds = fm.sweep(belt, wall_speed=[0.1, 0.5, 1.0], beta=[0.5, 1.0], mu=[1.5, 2.0])
+    >>> fm.plot_belt(ds).size
+    2
     """
     ds = to_draw(ds, "plot_belt", "belt")
     if "regime" not in ds:

@@ -223,6 +223,14 @@ def plot_boundaries(
     ------
     InputError
         The dataset has no boundaries, or the number of axes differs from the number of mu.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.boundaries(fm.System(), r=[0.4, 0.8, 1.2])
+    >>> axes = fm.plot_boundaries(ds)
+    >>> [ax.get_xlabel() for ax in axes.flat]
+    ['frequency ratio $r$']
     """
     ds = to_draw(ds, "plot_boundaries", "boundaries", "map")
     elastic = "beta_noslip" in ds

@@ -61,6 +61,19 @@ def plot_forces(ds: xr.Dataset, over: str | None = None, **options: Unpack[Figur
     ------
     InputError
         The dataset has no such axis, more than one r or mu, or one contact.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> pair = fm.System(
+    ...     contacts=[fm.Contact(masses=[1]), fm.Contact(masses=[2], force=0.1)],
+    ...     mass_ratios=[1, 1], stiffness_ratios=[1, 1], damping_ratios=0.02,
+    ... )
+    >>> outputs = ["regime", "contact_regime"]
+    >>> ds = fm.sweep(pair, [0.8], [0.1, 0.3, 0.5], axes={"contacts[2].force": [0.1, 0.3]}, outputs=outputs)
+    >>> axes = fm.plot_forces(ds)
+    >>> [ax.get_ylabel() for ax in axes.flat]
+    ['friction force of contact 2, over P (fixed-wall 2)']
     """
     check_options("plot_forces")
     ds, over = _checked(ds, over)

@@ -222,6 +222,14 @@ def plot_quantity(
     ------
     InputError
         The dataset is not a map or has no such variable, or the number of axes differs from that of panels.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.sweep(fm.System(), r=[0.4, 0.8, 1.2], beta=[0.1, 0.5, 0.9])
+    >>> axes = fm.plot_quantity(ds, "contact_amplitude")
+    >>> [ax.get_xlabel() for ax in axes.flat]
+    ['frequency ratio $r$']
     """
     ds = to_draw(ds, "plot_quantity", "map")
     valid = quantities_of(ds)

@@ -300,6 +300,14 @@ def plot_regimes(
     ------
     InputError
         The dataset has neither output or is not a map, or the number of axes differs from the number of mu.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.sweep(fm.System(), r=[0.4, 0.8, 1.2], beta=[0.1, 0.5, 0.9], mu=[1.0, 1.5])
+    >>> axes = fm.plot_regimes(ds)
+    >>> [ax.get_xlabel() for ax in axes.flat]
+    ['frequency ratio $r$', 'frequency ratio $r$']
     """
     ds = to_draw(ds, "plot_regimes", "map")
     by = counted(ds)

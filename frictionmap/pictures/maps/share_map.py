@@ -47,6 +47,15 @@ def plot_shares(ds: xr.Dataset, **options: Unpack[FigureOptions]) -> "AxesArray"
     ------
     InputError
         The dataset is not a result of `shares`.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> maps = fm.sweep(fm.System(), [0.4, 0.8], [0.3, 0.6], axes={"damping_ratios": [0.0, 0.1]})
+    >>> ds = fm.shares(maps, over="damping_ratios")
+    >>> axes = fm.plot_shares(ds)
+    >>> [ax.get_xlabel() for ax in axes.flat]
+    ['frequency ratio $r$', 'frequency ratio $r$']
     """
     ds = to_draw(ds, "plot_shares", "shares")
     check_holds(ds, ["regime_share"], "shares")

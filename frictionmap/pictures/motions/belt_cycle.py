@@ -44,6 +44,14 @@ def plot_belt_motion(ds: xr.Dataset, **options: Unpack[FigureOptions]) -> "AxesA
     ------
     InputError
         The dataset is another one.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.response(fm.System(damping_ratios=0.05), wall_speed=0.1, beta=0.5, mu=1.5)
+    >>> axes = fm.plot_belt_motion(ds)
+    >>> [ax.get_ylabel() for ax in axes.flat]
+    ['displacement', 'friction', 'velocity']
     """
     ds = to_draw(ds, "plot_belt_motion", "belt")
     check_holds(ds, ("time", "x", "v", "friction", "direction"), "a motion")

@@ -449,6 +449,15 @@ def plot_response(
     InputError
         The dataset is not a response or lacks a variable to draw, or the number of axes differs from that of
         the panels.
+
+    Examples
+    --------
+    Panels of the load, the displacement in the contact and the friction:
+
+    >>> import frictionmap as fm
+    >>> ds = fm.response(fm.System(), 0.3, 0.5)
+    >>> fm.plot_response(ds).size
+    3
     """
     ds = to_draw(ds, "plot_response", "response")
     check_holds(ds, ("z", "x", "friction", "direction"), "its motion")

@@ -232,6 +232,15 @@ def plot_history(
     ------
     InputError
         The dataset is no history or lacks a variable to draw, or the number of axes is wrong.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> pulse = fm.Record([0.0, 1.0, 0.0], dt=1.0, quantity="force")
+    >>> ds = fm.history(fm.System(), pulse, beta=[0.2])
+    >>> axes = fm.plot_history(ds)
+    >>> [ax.get_ylabel() for ax in axes.flat]
+    ['record', 'displacement', 'contact force']
     """
     ds = of_one_system(to_draw(ds, "plot_history", "history"))
     single = _is_single(ds) and "time" in ds.dims
@@ -300,6 +309,15 @@ def plot_spectrum(
     ------
     InputError
         The dataset is no spectrum, or has more than one mu or scale, or too many values of friction.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> pulse = fm.Record([0.0, 1.0, 0.0], dt=1.0, quantity="force")
+    >>> ds = fm.spectrum(pulse, period=[1.0, 2.0, 4.0], friction=[0.1, 0.2])
+    >>> axes = fm.plot_spectrum(ds)
+    >>> [ax.get_ylabel() for ax in axes.flat]
+    ['largest displacement']
     """
     ds = of_one_system(to_draw(ds, "plot_spectrum", "spectrum"))
     name = drawn_peak(ds)

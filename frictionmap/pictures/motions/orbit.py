@@ -140,6 +140,14 @@ def plot_orbit(
     InputError
         The dataset is not a response or lacks a variable to draw, or the number of axes differs from that of
         the panels.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> ds = fm.response(fm.System(), 0.3, 0.5)
+    >>> axes = fm.plot_orbit(ds)
+    >>> [ax.get_xlabel() for ax in axes.flat]
+    ['displacement $x$ / $(P/k_1)$', 'motion in the contact $z$ / $(P/k_1)$', 'harmonic $n$']
     """
     ds = to_draw(ds, "plot_orbit", "response")
     check_holds(ds, ("x", "v", "z", "friction"), "its orbit")

@@ -65,6 +65,15 @@ def plot_incremental(
     ------
     InputError
         The dataset is no spectrum, or has several scales, or too few values of friction.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> pulse = fm.Record([0.0, 1.0, 0.0], dt=1.0, quantity="force")
+    >>> ds = fm.spectrum(pulse, period=[1.0, 2.0], friction=[0.1, 0.2, 0.4])
+    >>> axes = fm.plot_incremental(ds)
+    >>> [ax.get_ylabel() for ax in axes.flat]
+    ['largest displacement']
     """
     ds = of_one_system(to_draw(ds, "plot_incremental", "spectrum"))
     name = drawn_peak(ds)
@@ -120,6 +129,15 @@ def plot_energies(
     ------
     InputError
         The dataset is no history, or has several mu or scales, or one value of beta and no samples.
+
+    Examples
+    --------
+    >>> import frictionmap as fm
+    >>> pulse = fm.Record([0.0, 1.0, 0.0], dt=1.0, quantity="force")
+    >>> ds = fm.history(fm.System(), pulse, beta=[0.1, 0.2, 0.4])
+    >>> axes = fm.plot_energies(ds)
+    >>> [ax.get_ylabel() for ax in axes.flat]
+    ['energy']
     """
     ds = of_one_system(to_draw(ds, "plot_energies", "history"))
     refuse_several(ds, "scale", "mu")

@@ -2,9 +2,10 @@
 
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
-NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, laws, design, static, bound,
-large, explore, first_minute, coupling, coverage, consistency, spectrum, histories or banks: each is a module
-of that name in `measures`.  It prints tables, and writes JSON and perhaps a figure.
+NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, continuation, laws, design,
+static, bound, large, explore, first_minute, coupling, coverage, consistency, spectrum, histories or banks:
+each is a module of that name in `measures`.  It prints tables, and writes JSON and perhaps a figure.  `all`
+takes about 40 minutes on two quiet processors, and continues after an interruption.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
@@ -21,7 +22,8 @@ of that name in `measures`.  It prints tables, and writes JSON and perhaps a fig
   steady                       solved against marched, uniqueness for mu = 1, unresolved undamped cells
   structures                   time against the number of masses; five masses against other solvers
   general                      several contacts, elastic contacts, periodic loads: cost, against other solvers
-  laws                         friction over speed: how random cells end, against other solvers
+  continuation                 response curves by programs for harmonic balance: time against error
+  laws                         friction over speed, contacts that open, belts: cost, against other solvers
   design                       design questions: time, against whole maps; borders of stop counts
   static                       maps at mu > 1 against those of another checkout, in turn
   bound                        beta_lim, the thesis's sum of maxima and a simulation; docs/fig-5-55.png
@@ -42,7 +44,9 @@ of that name in `measures`.  It prints tables, and writes JSON and perhaps a fig
   shaken                       motions under records: OpenSees, solve_ivp, heyoka
   contacts, periodic_load,     the same for several contacts and loads of several harmonics
   switching
-  speed_law                    the same for friction over speed
+  speed_law, slider            the same for friction over speed; contacts that open, belts without a load
+  curve, pyharm, nlvib         programs for harmonic balance that follow response curves
+  siconos                      time stepping by Siconos, for one mass
 `references/`                  reference results without code of the package; the tests use them, too
   closed_forms                 boundaries and continuous motions in 40 digits, condition numbers
   steady_states                steady states of one mass in 40 digits
@@ -58,7 +62,8 @@ of that name in `measures`.  It prints tables, and writes JSON and perhaps a fig
   quoted_errors                tables about errors; `quoted_coverage`: about the intervals of `identify`;
                                `quoted_general`: about several contacts and periodic loads;
                                `quoted_design`: about designs; `quoted_first_minute`: about the page;
-                               `quoted_histories`: about motions in time
+                               `quoted_histories`: about motions in time;
+                               `quoted_curves`: about programs for harmonic balance, laws, opening contacts
   quoting                      format of the numbers
 `results/`                     the committed results; `results/local` has those of local runs
 =============================  ========================================================================

@@ -6,7 +6,7 @@ exception is "frictionmap", the package with its default method, which ends when
 Only cells that repeat every excitation period are used, and only if their Floquet multipliers show that the
 transient has decayed by then. The remaining error is that of the method. It is measured against 40-digit
 orbits (`references.periodic_orbit`). Other solvers of one mass get the end of a stop in closed form (an
-arccos), which favours them; fixed-step methods search for it. Siconos is not included; its method,
+arccos), which favours them; fixed-step methods search for it. Siconos is in `laws`; its method,
 Moreau-Jean time stepping, is implemented in `fixed_step`. The times are those of the cells alone; the time of
 the curves at the frequency of a cell is given separately.
 

@@ -28,7 +28,7 @@ _QUICK_QUESTIONS = ("two masses: least peak", "two masses, elastic contact: leas
 #: Frequencies and friction ratios of the maps that look for better answers; random systems, of which the
 #: quick form leaves out the first: three masses, for which the answer takes longer than for all others.
 GRID, QUICK_GRID = (1500, 150), (150, 30)
-RANDOM, QUICK_RANDOM = range(50), range(1, 4)
+RANDOM, QUICK_RANDOM = range(25), range(1, 4)
 
 #: Lowest columns of a map that are compared, how many of their peaks, and how often these are refined.
 _LOWEST, _PEAKS, _ZOOMS = 3, 4, 4

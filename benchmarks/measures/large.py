@@ -38,8 +38,8 @@ SAMPLES = {False: 1000, True: 24}
 WORKERS_SAMPLES = {False: 250, True: 24}
 KILLED_SAMPLES = 24
 SMALL_MAP = {False: 60, True: 15}
-KILLS = {False: 100, True: 1}
-RUNS = {False: 5, True: 1}
+KILLS = {False: 20, True: 1}
+RUNS = {False: 3, True: 1}
 
 GRID = """
 [system]

@@ -1,20 +1,29 @@
-"""Friction over speed: random cells without a proof of a single steady state, and other solvers.
+"""Friction over speed, contacts that open, belts without a load: how random cells end, and other solvers.
 
 Random cells: up to three masses and as many contacts, laws of up to four segments, belts, mu up to 1.5,
 damping ratios down to some thousandths.  Each is followed from rest; counted are statuses and cycles.
 
-Other solvers march one mass from rest, with a falling law that damping outweighs, for the periods after which
-a disturbance has decayed to 1e-10.  Errors are those of max z - min z, relative to frictionmap.
+Other solvers march one mass from rest: with constant friction and with a falling law that damping outweighs,
+for the periods after which a disturbance has decayed to 1e-10; with a contact that opens; on a belt without a
+load, where little damping leaves a cycle.  Errors are those of max z - min z, relative to frictionmap, which
+is timed in rows of a map.
 """
 
+import math
 from collections import Counter
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import frictionmap as fm
 
 from ..peers.contacts import ContactBody, ContactCell
+from ..peers.peer import Peer
+from ..peers.siconos import Siconos
+from ..peers.slider import Slider, SliderSolveIvp
 from ..peers.speed_law import LawHeyoka, LawPeer, LawSolveIvp
 from ..report.figures import new_figure, save_figure
 from ..report.record import pinned, save, spread, table, timed
@@ -24,15 +33,51 @@ from .general.against import periods_needed
 _CELLS, CYCLES = {False: 10_000, True: 40}, 2000
 
 #: The law of the comparison, its damping ratio, and cells by quick.
-LAW = {"speed": [0.0, 0.2, 0.6], "factor": [1.0, 0.8, 0.7], "slope": 0.05}
-_ZETA, _COMPARED = 0.15, {False: 10, True: 2}
+LAW: dict = {"speed": [0.0, 0.2, 0.6], "factor": [1.0, 0.8, 0.7], "slope": 0.05}
+ZETA, _COMPARED = 0.15, {False: 10, True: 2}
 
-#: Tolerances of the other solvers.
-_TOLERANCES = {LawSolveIvp: (1e-6, 1e-9), LawHeyoka: (1e-6, 1e-9, 2.3e-16)}
+CONSTANT = {"speed": [0.0], "factor": [1.0], "slope": 0.0}
+
+#: Normal stiffness and coefficient of friction of the contact that opens, and the periods that others
+#: march; damping ratio of the mass on a belt, and its cycles.
+_PRESS, _PHI, _SETTLING = 0.5, 0.3, 40
+_LOW_ZETA, _CYCLES = 0.02, 10
+
+#: Cells of a row of a map.
+_ROW = 400
 
 _OURS, _THEIRS = {False: 20, True: 2}, {False: 3, True: 1}
 
-_COLOURS = {LawSolveIvp.name: "#b2552f", LawHeyoka.name: "#6f9e3c"}
+_COLOURS = {LawSolveIvp.name: "#b2552f", LawHeyoka.name: "#6f9e3c", Siconos.name: "#8a8a8a"}
+
+
+class Cell(NamedTuple):
+    """A cell for other solvers: what they are given, the periods that they march, the range of z."""
+
+    given: Any
+    periods: int
+    expected: float
+
+
+Run = Callable[[Cell], float]
+Way = Callable[[float], Run]
+
+
+class Method(NamedTuple):
+    """A solver with a setting that trades time for accuracy, and how a value of it makes a run."""
+
+    kind: type[Peer]
+    make: Way
+    setting: str
+    values: tuple[float, ...]
+
+
+class Scene(NamedTuple):
+    """Cells by quick, a row of a map of the same kind, and solvers."""
+
+    cells: Callable[[bool], Iterator[Cell]]
+    row: Callable[[], object]
+    methods: tuple[Method, ...]
 
 
 def random_law(rng: np.random.Generator) -> dict:
@@ -120,78 +165,186 @@ def random_cells(quick: bool) -> dict:
     return content
 
 
-def _sample(quick: bool) -> list[tuple[ContactCell, int, float]]:
-    """Cells of one mass that stop, the periods that others march, and the range of z."""
-    system = fm.System(damping_ratios=_ZETA, contacts=[fm.Contact("fixed-wall", [1], law=LAW)])
-    rng, found = np.random.default_rng(1), []
-    while len(found) < _COMPARED[quick]:
+def law_cells(law: dict | None, quick: bool) -> Iterator[Cell]:
+    """Cells of one mass under a load, mu = 1, whose steady state is the only one."""
+    system = fm.System(damping_ratios=ZETA, contacts=[fm.Contact("fixed-wall", [1], law=law)])
+    rng, count = np.random.default_rng(1), 0
+    while count < _COMPARED[quick]:
         r, beta = float(rng.uniform(0.3, 1.4)), float(rng.uniform(0.1, 0.29))
-        ds = fm.sweep(system, [r], [beta], outputs=["contact_peak_to_peak", "multiplier", "unique"])
-        if ds.unique.item():
+        ds = fm.sweep(system, [r], [beta], outputs=["contact_peak_to_peak", "multiplier", "unique", "regime"])
+        if ds.unique.item() and ds.regime.item() != fm.regimes.PERMANENT_STICKING:
             periods = periods_needed(ds.multiplier.item())
-            found.append((ContactCell(r, (beta,)), periods, ds.contact_peak_to_peak.item()))
+            count += 1
+            yield Cell(ContactCell(r, (beta,)), periods, ds.contact_peak_to_peak.item())
+
+
+def _opening_slider(r: float, beta: float) -> Slider:
+    """One mass whose displacement presses its contact, over the phase of its load."""
+    force = beta / _PHI
+
+    def push(t: float, z: float, v: float) -> float:
+        normal = max(0.0, force + _PRESS * z)
+        return (math.cos(t) - 2.0 * ZETA * r * v - z - (normal - force)) / r**2
+
+    def limit(z: float, _w: float) -> float:
+        return _PHI * max(0.0, force + _PRESS * z) / r**2
+
+    return Slider(push, limit, 0.0, (lambda z, _w: force + _PRESS * z,))
+
+
+def opening_cells(quick: bool) -> Iterator[Cell]:
+    """Cells of one mass whose contact opens; the others march until its damping has decayed everything."""
+    rng = np.random.default_rng(2)
+    for _ in range(_COMPARED[quick]):
+        r, beta = float(rng.uniform(0.4, 1.2)), float(rng.uniform(0.05, 0.15))
+        ds = fm.sweep(opening_system(), [r], [beta], outputs=["contact_peak_to_peak"])
+        yield Cell((_opening_slider(r, beta), 2.0 * math.pi), _SETTLING, ds.contact_peak_to_peak.item())
+
+
+def _belt_slider(speed: float, beta: float) -> Slider:
+    """One mass on a belt under the law, in its natural time."""
+    speeds, factors, slope = LAW["speed"], LAW["factor"], LAW["slope"]
+
+    def push(_t: float, z: float, v: float) -> float:
+        return -2.0 * _LOW_ZETA * v - z
+
+    def limit(_z: float, w: float) -> float:
+        return beta * (float(np.interp(w, speeds, factors)) + slope * max(0.0, w - speeds[-1]))
+
+    bends = tuple(lambda _z, w, bend=bend: w - bend for bend in speeds[1:])
+    return Slider(push, limit, speed, bends)
+
+
+def belt_cells(quick: bool) -> Iterator[Cell]:
+    """Cycles of one mass on a belt under the law."""
+    rng = np.random.default_rng(3)
+    for _ in range(_COMPARED[quick]):
+        speed, beta = float(rng.uniform(0.05, 0.2)), float(rng.uniform(0.3, 0.6))
+        ds = fm.sweep(belt_system(), wall_speed=[speed], beta=[beta])
+        given = _belt_slider(speed, beta), ds.cycle_period.item()
+        yield Cell(given, _CYCLES, (ds.z_max - ds.z_min).item())
+
+
+def opening_system() -> fm.System:
+    """One mass whose displacement presses its contact."""
+    normal = {"mass": 1, "stiffness": _PRESS, "friction": _PHI}
+    return fm.System(damping_ratios=ZETA, contacts=[fm.Contact("fixed-wall", [1], normal=normal)])
+
+
+def belt_system() -> fm.System:
+    """One mass on a belt, with little damping."""
+    return fm.System(damping_ratios=_LOW_ZETA, contacts=[fm.Contact("fixed-wall", [1], law=LAW)])
+
+
+def _with_law(law: dict | None) -> tuple[Method, ...]:
+    """Solvers for one mass with friction over speed under a load."""
+    body, given = ContactBody(((1,),), {1: 1.0}, zeta=ZETA), law or CONSTANT
+
+    def way(kind: type[LawPeer], name: str) -> Way:
+        def make(tolerance: float) -> Run:
+            peer = kind(body, **given, **{name: tolerance})
+            return lambda cell: peer.run(cell.given, cell.periods).ranges[0]
+
+        return make
+
+    def stepping(steps: float) -> Run:
+        peer = Siconos(body, int(steps))
+        return lambda cell: peer.run(cell.given, cell.periods).ranges[0]
+
+    found = (
+        Method(LawSolveIvp, way(LawSolveIvp, "rtol"), "rtol", (1e-6, 1e-9)),
+        Method(LawHeyoka, way(LawHeyoka, "tol"), "tol", (1e-6, 1e-9, 2.3e-16)),
+    )
+    return found if law else (*found, Method(Siconos, stepping, "steps per period", (64, 256, 1024, 4096)))
+
+
+def _slider(tolerance: float) -> Run:
+    """Run of `SliderSolveIvp` at one tolerance."""
+
+    def run(cell: Cell) -> float:
+        slider, period = cell.given
+        return SliderSolveIvp(slider, tolerance).range(0.0, period, cell.periods)
+
+    return run
+
+
+def _scenes() -> dict[str, Scene]:
+    """What is compared: cells, a row of a map, solvers."""
+    slider = (Method(SliderSolveIvp, _slider, "rtol", (1e-6, 1e-9)),)
+    beta, outputs = np.linspace(0.1, 0.29, _ROW), ["regime", "contact_peak_to_peak"]
+
+    def row(system: fm.System, beta: np.ndarray) -> Callable[[], object]:
+        return partial(fm.sweep, system, [0.8], beta, threads=1, outputs=outputs)
+
+    found = {
+        name: Scene(
+            partial(law_cells, law),
+            row(fm.System(damping_ratios=ZETA, contacts=[fm.Contact("fixed-wall", [1], law=law)]), beta),
+            _with_law(law),
+        )
+        for name, law in (("constant friction", None), ("friction over speed, three segments", LAW))
+    }
+    found["contact that opens"] = Scene(opening_cells, row(opening_system(), 0.5 * beta), slider)
+    speeds = np.linspace(0.05, 0.2, _ROW)
+    belt = partial(fm.sweep, belt_system(), wall_speed=speeds, beta=[0.4], threads=1)
+    found["belt without a load, three segments"] = Scene(belt_cells, belt, slider)
     return found
 
 
-def _our_seconds(cells: list, quick: bool) -> dict:
-    """Time of a cell in a map of one row, with everything else of the call."""
-    system = fm.System(damping_ratios=_ZETA, contacts=[fm.Contact("fixed-wall", [1], law=LAW)])
-    r, beta = cells[0][0].r, np.linspace(0.1, 0.29, 400)
-    outputs = ["regime", "contact_peak_to_peak"]
-    runs = [
-        timed(lambda: fm.sweep(system, [r], beta, threads=1, outputs=outputs))[0] for _ in range(_OURS[quick])
-    ]
-    return spread([seconds / beta.size for seconds in runs])
-
-
-def _point(peer: LawPeer, cells: list, runs: int) -> dict:
+def _point(run: Run, cells: list[Cell], runs: int) -> dict:
     """Time and errors of one solver at one tolerance."""
     errors, seconds = [], []
-    for cell, periods, expected in cells:
-        taken = [timed(lambda cell=cell, n=periods: peer.run(cell, n)) for _ in range(runs)]
+    for cell in cells:
+        taken = [timed(lambda cell=cell: run(cell)) for _ in range(runs)]
         seconds.append(min(one for one, _ in taken))
-        errors.append(abs(taken[0][1].ranges[0] / expected - 1.0))
+        errors.append(abs(taken[0][1] / cell.expected - 1.0))
     return {"seconds a cell": spread(seconds), "relative errors of ranges": errors}
 
 
 def other_solvers(quick: bool) -> dict:
     """Time against error of other solvers for the same cells."""
-    cells, body = _sample(quick), ContactBody(((1,),), {1: 1.0}, zeta=_ZETA)
-    found: dict = {"our seconds a cell": _our_seconds(cells, quick), "methods": {}}
-    rows = [("frictionmap", "", found["our seconds a cell"]["median"], 0.0)]
-    for kind, tolerances in _TOLERANCES.items():
-        if missing := kind.why_missing():
-            found["methods"][kind.name] = {"missing": missing}
-            continue
-        points = []
-        for tolerance in tolerances[-1:] if quick else tolerances:
-            name = {"rtol": tolerance} if kind is LawSolveIvp else {"tol": tolerance}
-            point = _point(kind(body, **LAW, **name), cells, _THEIRS[quick])
-            points.append({"tolerance": tolerance, **point})
-            error = float(np.median(point["relative errors of ranges"]))
-            rows.append((kind.name, tolerance, point["seconds a cell"]["median"], error))
-        found["methods"][kind.name] = {"points": points}
-    table(("solver", "tolerance", "seconds a cell", "median error"), rows)
+    found: dict = {}
+    rows: list[tuple] = []
+    for name, scene in _scenes().items():
+        cells = list(scene.cells(quick))
+        ours = spread([timed(scene.row)[0] / _ROW for _ in range(_OURS[quick] + 1)][1:])
+        found[name] = {"cells": len(cells), "our seconds a cell": ours, "methods": {}}
+        rows.append((name, "frictionmap", "", ours["median"], 0.0))
+        for method in scene.methods:
+            if missing := method.kind.why_missing():
+                found[name]["methods"][method.kind.name] = {"skipped": missing}
+                continue
+            points = []
+            for value in method.values[1:2] if quick else method.values:
+                point = _point(method.make(value), cells, _THEIRS[quick])
+                points.append({"value": value, **point})
+                error = float(np.median(point["relative errors of ranges"]))
+                label = f"{method.setting} = {value:g}"
+                rows.append((name, method.kind.name, label, point["seconds a cell"]["median"], error))
+            found[name]["methods"][method.kind.name] = {"setting": method.setting, "points": points}
+    table(("cell", "solver", "setting", "seconds a cell", "median error"), rows)
     return found
 
 
-def draw(found: dict, path: Path) -> None:
-    """Draw time over error."""
-    figure = new_figure(5.0, 3.6)
-    axes = figure.subplots()
-    for name, entry in found["methods"].items():
-        points = [
-            (max(float(np.median(one["relative errors of ranges"])), 1e-16), one["seconds a cell"]["median"])
-            for one in entry.get("points", ())
-        ]
-        if points:
-            axes.loglog(*zip(*points, strict=True), marker="o", color=_COLOURS[name], label=name)
-    axes.axhline(found["our seconds a cell"]["median"], color="#2c5aa0", label="frictionmap, exact")
-    axes.set_xlabel("relative error of the range")
-    axes.set_ylabel("time per cell [s]")
-    axes.set_title("One mass, friction over speed with three segments", fontsize=10)
-    axes.legend(fontsize=8)
-    axes.grid(alpha=0.25)
+def draw(content: dict, path: Path) -> None:
+    """Draw time over error, a panel per scene."""
+    figure = new_figure(10.0, 7.0)
+    for axes, (name, found) in zip(figure.subplots(2, 2).flat, content.items(), strict=True):
+        for solver, entry in found["methods"].items():
+            points = [
+                (
+                    max(float(np.median(one["relative errors of ranges"])), 1e-16),
+                    one["seconds a cell"]["median"],
+                )
+                for one in entry.get("points", ())
+            ]
+            if points:
+                axes.loglog(*zip(*points, strict=True), marker="o", color=_COLOURS[solver], label=solver)
+        axes.axhline(found["our seconds a cell"]["median"], color="#2c5aa0", label="frictionmap, exact")
+        axes.set(xlabel="relative error of the range", ylabel="time per cell [s]")
+        axes.set_title(f"One mass, {name}", fontsize=10)
+        axes.legend(fontsize=8)
+        axes.grid(alpha=0.25)
     save_figure(figure, path)
 
 

@@ -76,7 +76,7 @@ SHARES = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0)
 OPEN_FROM = 0.8  # above the largest beta_lim of a fixed wall, pi/4
 
 #: A map is timed until so many seconds are spent, this often at least and at most.
-SECONDS, LEAST_RUNS, MOST_RUNS = 4.0, 3, 30
+SECONDS, LEAST_RUNS, MOST_RUNS = 2.0, 3, 30
 
 
 def repeated(function: Callable[[], object], quick: bool) -> tuple[list[float], list]:

@@ -20,8 +20,8 @@ from ..report.record import pinned, save, spread, table, timed
 ONE_MASS, STRUCTURE = (ROOT / "configs" / name for name in ("fig-3-12.toml", "fig-7-7-zeta-0.1.toml"))
 
 #: Rounds, and how many of them have runs of a structure too; by quick.
-ROUNDS = {False: 4, True: 1}
-STRUCTURE_ROUNDS = {False: 3, True: 0}
+ROUNDS = {False: 3, True: 1}
+STRUCTURE_ROUNDS = {False: 2, True: 0}
 
 NOTHING = "python, doing nothing"
 IMPORT, IMPORT_SWEEP, HELP = "import frictionmap", "import of frictionmap.sweep", "frictionmap --help"

@@ -364,7 +364,7 @@ def peers(quick: bool) -> dict:
                 entry["skipped"] = why
                 continue
             cells, left_out = sample_cells(system, count, MOST_CYCLES[peer_class.name], rng)
-            found = against(peer_class(chain), system, cells, 1 if quick else 3)
+            found = against(peer_class(chain), system, cells, 1 if quick else 2)
             entry[f"zeta = {zeta:g}"] = {"cells left out, too many periods": left_out, **found}
             differences = found["differences"]
             theirs, ours = found["seconds a cell"]["median"], found["our seconds a cell"]["median"]

@@ -13,6 +13,7 @@ chain             chains: slides and stops are integrated
 contacts          problem with several contacts and a periodic load: bodies, cells, outcomes
 periodic_load     one mass under several harmonics: slides are integrated, stops end on samples of the load
 speed_law         one mass under friction over speed: slides are integrated from break point to break point
+slider            one mass on a slider with any force law: contacts that open, belts without a load
 switching         several contacts: which of them slide after an event; each phase is integrated
 solve_ivp         explicit Runge-Kutta pairs of scipy
 heyoka            a compiled Taylor integrator
@@ -22,5 +23,8 @@ fixed_step        RK4 with sticking logic, Moreau-Jean
 moreau            Moreau-Jean time stepping for several contacts
 shaken            motions under records, one contact: OpenSees, scipy and heyoka with events
 harmonic_balance  harmonic balance with alternating frequency and time for one elastic contact
+curve             problem of programs that follow response curves by harmonic balance
+pyharm, nlvib     two such programs; the second under Octave
+siconos           time stepping by Siconos, for one mass with a rigid contact
 ================  ===========================================================================================
 """

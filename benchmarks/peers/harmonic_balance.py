@@ -127,6 +127,17 @@ def _stacked(values: np.ndarray) -> np.ndarray:
     return np.concatenate((values.real, values.imag))
 
 
+def amplitudes(orders: np.ndarray, stacked: np.ndarray) -> np.ndarray:
+    """Largest abs(z) of sums of odd harmonics, (cells,); the maximum between points is that of a parabola."""
+    angles = np.outer(TWO_PI / (2 * _POINTS) * np.arange(_POINTS), orders)
+    z = np.abs(stacked @ np.hstack((np.cos(angles), -np.sin(angles))).T)
+    k = z.argmax(axis=1)
+    cells = np.arange(len(z))
+    before, at, after = z[cells, k - 1], z[cells, k], z[cells, (k + 1) % _POINTS]
+    bend = before - 2.0 * at + after
+    return at - (after - before) ** 2 / (8.0 * np.where(bend < 0.0, bend, -np.inf))
+
+
 def _multiplication(factors: np.ndarray) -> np.ndarray:
     """Matrix that multiplies stacked numbers by complex factors."""
     real, imaginary = np.diag(factors.real), np.diag(factors.imag)
@@ -166,13 +177,3 @@ class HarmonicBalance:
         found = np.empty((beta.size, stuck.size))
         solve_row(balance, beta, stuck, found)
         return found
-
-    def amplitudes(self, found: np.ndarray) -> np.ndarray:
-        """Largest abs(z) of solutions, (cells,); the maximum between points is that of a parabola."""
-        angles = np.outer(TWO_PI / (2 * _POINTS) * np.arange(_POINTS), self.orders)
-        z = np.abs(found @ np.hstack((np.cos(angles), -np.sin(angles))).T)
-        k = z.argmax(axis=1)
-        cells = np.arange(len(z))
-        before, at, after = z[cells, k - 1], z[cells, k], z[cells, (k + 1) % _POINTS]
-        bend = before - 2.0 * at + after
-        return at - (after - before) ** 2 / (8.0 * np.where(bend < 0.0, bend, -np.inf))

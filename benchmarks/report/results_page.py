@@ -13,6 +13,7 @@ from pathlib import Path
 
 from .. import ROOT
 from .quoted_coverage import coverage_lines
+from .quoted_curves import continuation_lines, laws_lines
 from .quoted_design import design_lines
 from .quoted_errors import accuracy_lines, steady_lines, stress_lines
 from .quoted_first_minute import first_minute_lines
@@ -29,6 +30,8 @@ QUOTED = (
     "peers",
     "structures",
     "general",
+    "continuation",
+    "laws",
     "consistency",
     "design",
     "histories",
@@ -424,18 +427,21 @@ def _machine(found: dict[str, dict]) -> str:
 
 
 def _commits(found: dict[str, dict]) -> str:
-    """Sentence on the commits of the results; results of several commits are named, as a warning."""
+    """Sentences on the commits of the results; several commits, and quick forms, are named as a warning."""
     names: dict[str, list[str]] = {}
     for name, content in found.items():
         names.setdefault(content.get("commit") or "not recorded", []).append(name)
+    runs = {name: content["run"] for name, content in found.items() if "run" in content}
+    quick = [name for name, run in runs.items() if run["quick"]]
+    warning = f" **Quick forms, which measure little:** {', '.join(quick)}." if quick else ""
     if list(names) == ["not recorded"]:
-        return "The commit of these results was not recorded."
+        return f"The commit of these results was not recorded.{warning}"
     if len(names) == 1:
-        seconds = sum(content["run"]["seconds"] for content in found.values() if "run" in content)
-        taken = f", in {round(seconds / 60)} minutes" if seconds else ""
-        return f"All tables are of commit {next(iter(names))}{taken}."
+        taken = f", in {round(sum(run['seconds'] for run in runs.values()) / 60)} minutes" if runs else ""
+        return f"All tables are of commit {next(iter(names))}{taken}.{warning}"
     parts = "; ".join(f"{', '.join(some)}: {one}" for one, some in names.items())
-    return f"**These results are of different commits**, so do not compare them with each other. {parts}."
+    text = "**These results are of different commits**, so do not compare them with each other."
+    return f"{text} {parts}.{warning}"
 
 
 def block(results: Path) -> str:
@@ -451,6 +457,10 @@ def block(results: Path) -> str:
         lines += _peer_lines(peers, structures)
     if "general" in found:
         lines += general_lines(found["general"])
+    if "continuation" in found:
+        lines += continuation_lines(found["continuation"])
+    if "laws" in found:
+        lines += laws_lines(found["laws"])
     if "consistency" in found:
         lines += consistency_lines(found["consistency"])
     if "design" in found:

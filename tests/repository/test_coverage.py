@@ -181,5 +181,5 @@ def test_the_kept_table_has_all_cases_and_no_interval_that_falls_short():
     for kind, cases in coverage.KINDS.items():
         for case in cases:
             row = kept[kind][case.name]
-            assert row["seeds"] == case.seeds, (kind, case.name)
+            assert row["seeds"] in (case.seeds, round(coverage.SHARE * case.seeds)), (kind, case.name)
             assert not [name for name, one in row["parameters"].items() if one["short"]], (kind, case.name)

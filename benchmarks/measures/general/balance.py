@@ -6,7 +6,7 @@ method needs few steps from a neighbour.  The error is that of max abs(z), relat
 
 import numpy as np
 
-from ...peers.harmonic_balance import HarmonicBalance
+from ...peers.harmonic_balance import HarmonicBalance, amplitudes
 from ...report.record import spread, table, timed
 from .cost import stick_slip_range
 from .kernels import map_row
@@ -31,7 +31,7 @@ def _point(highest: int, rows: list[tuple[float, np.ndarray]], exact: list[np.nd
         seconds.append(taken / cells)
     errors = np.concatenate(
         [
-            np.abs(balance.amplitudes(one) - z) / z
+            np.abs(amplitudes(balance.orders, one) - z) / z
             for one, z in zip(found, exact, strict=True)
         ]
     )  # fmt: skip

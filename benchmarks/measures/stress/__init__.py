@@ -45,7 +45,7 @@ from .picture import draw
 from .summary import print_summaries, summary
 
 #: Random cells wanted, and seconds after which to be content with fewer; by quick.
-RANDOM_CELLS = {False: (1_000_000, 600.0), True: (100, 5.0)}
+RANDOM_CELLS = {False: (200_000, 200.0), True: (100, 5.0)}
 
 GROUPS: tuple[Callable[[bool], Group], ...] = (
     curves_at_r, curves_at_zeta, curves_far, curves_at_modes, curves_spread, curves_close_modes, cells_at_lim,

@@ -30,7 +30,15 @@ _KINDS = (
     regimes.Code(0, "stop", "a slide ends"),
     regimes.Code(1, "start", "a slide begins"),
     regimes.Code(2, "turn", "the sense of a slide changes without a stop"),
+    regimes.Code(3, "opening", "the contact opens"),
+    regimes.Code(4, "closing", "the contact closes"),
+    regimes.Code(5, "knot", "a piecewise linear spring, whose number `event_contact` is, passes a knot"),
 )
+
+OPENINGS = (
+    regimes.Code(0, "closed", "the contact has a normal force"),
+    regimes.Code(1, "open", "the contact is open: it has no normal force"),
+)  # fmt: skip
 
 SENSES = (
     regimes.Code(-1, "sliding_down", "the contact slides towards smaller z"),
@@ -63,6 +71,8 @@ MOTIONS = {
     "dof": Label(np.int64, "mass, counted from 1", ("dof",), least=1),
     "contact": Label(np.int64, "contact, counted from 1", ("contact",), least=1),
     "contact_name": Label(np.str_, "name of the contact", ("contact",)),
+    "spring": Label(np.int64, "piecewise linear spring, counted from 1", ("spring",), least=1),
+    "spring_name": Label(np.str_, "name of the spring", ("spring",)),
     "record_name": Label(np.str_, "name of the record", ("record",)),
     "x": _real(f"displacement of the masses, {_X}", "dof", "time"),
     "v": _real(f"velocity of the masses, {_V}", "dof", "time"),
@@ -71,6 +81,11 @@ MOTIONS = {
     "friction": _real(f"friction force against the motion in the contact, {_F}", "time"),
     "direction": Label(np.int8, "direction of the motion in the contact", (*CELL, "time"), SENSES),
     "y": _real(f"displacement of the slider of an elastic contact, {_X}", "time"),
+    "normal_force": _size(
+        f"normal force in the contact, {_F}", "time", comment="NaN where the motion does not change it"
+    ),
+    "open": Label(np.int8, "whether the contact is open", (*CELL, "time"), OPENINGS),
+    "piecewise_force": _real(f"force of a piecewise linear spring, {_F}", "spring", "time"),
     "drive": _real("the record: a force over P, or the acceleration of the base over omega_1^2 P/k1", "time"),
     "stored_energy": _size(f"energy of masses and springs, also of the springs in contacts, {_E}", "time"),
     "lost_friction": _real(f"lost in the contact since the beginning, {_E}", "time"),
@@ -106,6 +121,14 @@ MOTIONS = {
         np.float64, "share of the time in which the contact does not slide", CELL, least=0.0, most=1.0,
         nan=True,
     ),
+    "separations": _size("openings of the contact"),
+    "open_fraction": Label(
+        np.float64, "share of the time in which the contact is open", CELL, least=0.0, most=1.0, nan=True
+    ),
+    "normal_force_max": _size(f"largest normal force in the contact, {_F}"),
+    "normal_force_min": _size(f"least normal force in the contact, {_F}"),
+    "spring_force_max": _size(f"largest force of a piecewise linear spring, {_F}", "spring"),
+    "spring_crossings": _size("knots that a piecewise linear spring passes", "spring"),
     "sliding_distance": _size(f"sliding distance, {_X}"),
     "largest_slide": _size(f"longest distance of a slide, {_X}"),
     "work_load": _real(f"work of the load, {_E}", comment="of -M iota a where the base moves"),
@@ -168,7 +191,8 @@ OF_CONTACTS = (
     "z", "friction", "direction", "y", "contact_amplitude", "friction_amplitude", "contact_amplitude_time",
     "friction_amplitude_time", "z_max", "z_min", "friction_max", "friction_min", "contact_residual", "stops",
     "slips", "turns", "stuck_fraction", "sliding_distance", "largest_slide", "work_friction",
-    "lost_friction",
+    "lost_friction", "normal_force", "open", "normal_force_max", "normal_force_min", "separations",
+    "open_fraction",
 )  # fmt: skip
 
 #: Times: in seconds where the natural frequency is known.
@@ -187,7 +211,8 @@ IN_SI: dict[str, tuple[str, ...]] = {
     "acceleration": ("acceleration", "acceleration_amplitude", "acceleration_max", "acceleration_min"),
     "force": (
         "friction", "friction_amplitude", "friction_max", "friction_min", "base_force", "base_force_max",
-        "base_force_min", "spring_force", "beta_hold",
+        "base_force_min", "spring_force", "beta_hold", "normal_force", "normal_force_max",
+        "normal_force_min", "piecewise_force", "spring_force_max",
     ),
     "work": ("work_load", "work_friction", "work_damping", "work_walls", "energy",
              "stored_energy", "lost_friction", "lost_damping"),

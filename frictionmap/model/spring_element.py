@@ -49,6 +49,17 @@ class SpringElement:
         above = self.stiffness_above * np.maximum(u - self.displacement[-1], 0.0)
         return np.interp(u, self.displacement, self.force) + below + above
 
+    def energy(self, displacement: Any) -> np.ndarray:
+        """Work of F from 0 to displacements c.x."""
+        u = np.append(np.asarray(displacement, dtype=float), 0.0)
+        knots, forces = np.array(self.displacement), np.array(self.force)
+        stored = np.append(0.0, np.cumsum(0.5 * (forces[1:] + forces[:-1]) * np.diff(knots)))
+        piece = np.searchsorted(knots, u)
+        knot = np.maximum(piece - 1, 0)
+        way = u - knots[knot]
+        found = stored[knot] + (forces[knot] + 0.5 * np.array(self.slopes)[piece] * way) * way
+        return np.asarray(found[:-1] - found[-1]).reshape(np.shape(displacement))
+
 
 @dataclass(frozen=True, repr=False)
 class Spring(Shown):

@@ -18,6 +18,8 @@ bed              the structure with all contacts held under no load: place of re
 structure        a system under channels as arrays for the kernels, and what is watched of it
 starts           states at the beginning: at rest, given, or where another motion ended
 cells            the motions of a grid of records, scales and friction, on several threads
+phase_beds       one phase of contacts that open and springs, under no load: its place of rest, asleep
+opening          motions of systems with such contacts and piecewise linear springs
 statistics       medians, quantiles, exceedance over records; means of stationary motions over time
 averages         statistics of stationary motions beside their histories
 holding          the largest forces in contacts that all hold: the friction from which nothing moves

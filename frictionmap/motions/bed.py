@@ -9,7 +9,7 @@ from .._kernels.history.asleep import Bed
 
 #: Squared frequencies of held modes below this share of the largest are those of motions that nothing
 #: restores, computed with rounding error.
-_FREE = 1e-13
+FREE = 1e-13
 
 
 class Held(NamedTuple):
@@ -21,7 +21,7 @@ class Held(NamedTuple):
     restored: bool  # whether every motion that the contacts leave has one
 
 
-def _basis(rigid: np.ndarray, modes: int) -> np.ndarray:
+def basis_beside(rigid: np.ndarray, modes: int) -> np.ndarray:
     """Orthonormal motions (m, h) that the held rigid contacts leave."""
     if not rigid.size:
         return np.eye(modes)
@@ -39,10 +39,10 @@ def held(problem: Problem) -> Held:
     q = np.eye(modes, size)
     p = np.eye(modes, size, modes)
     f = np.eye(contacts, size, 2 * modes)[elastic]
-    basis = _basis(chi_r, modes)
+    basis = basis_beside(chi_r, modes)
     stiffness = basis.T @ (np.diag(problem.squares) + chi_e.T @ (kt[:, np.newaxis] * chi_e)) @ basis
     squares, shapes = np.linalg.eigh(stiffness) if basis.shape[1] else (np.empty(0), np.empty((0, 0)))
-    restored = squares > _FREE * max(squares.max(initial=0.0), problem.squares.max(initial=0.0))
+    restored = squares > FREE * max(squares.max(initial=0.0), problem.squares.max(initial=0.0))
     shapes_r = basis @ shapes[:, restored]
     omega = np.sqrt(squares[restored])
     pull = shapes_r.T @ (problem.squares[:, np.newaxis] * q + chi_e.T @ f)

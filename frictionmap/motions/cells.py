@@ -1,5 +1,6 @@
 """The motions of a grid of records, scales and friction, on several threads."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +35,15 @@ class Asked(NamedTuple):
     every: int  # number of samples from a kept state to the next; 0: none
 
 
+class Opened(NamedTuple):
+    """What a motion has besides whose contacts open, or that has piecewise linear springs."""
+
+    preload: np.ndarray  # (N,) N0
+    separations: np.ndarray  # (N,)
+    time: np.ndarray  # (N,) in which a contact is open
+    crossings: np.ndarray  # (S,) knots that a spring has passed
+
+
 class Found(NamedTuple):
     """One motion."""
 
@@ -45,13 +55,23 @@ class Found(NamedTuple):
     end: float  # when that is
     asleep: float  # since when no contact moves again; NaN where this is not proved
     place: np.ndarray | None  # (m,) modes where it comes to rest; None where it may move on
+    opened: Opened | None = None
 
 
-def _starting(structure: Structure, start: Start) -> np.ndarray:
+def starting(structure: Structure, start: Start) -> np.ndarray:
     m, contacts = start.q.size, structure.spring.size
     found = np.zeros((3, max(m, contacts)))
     found[0, :m], found[1, :m], found[2, :contacts] = start.q, start.p, start.f
     return found
+
+
+def room_for(asked: Asked, steps: np.ndarray, limits: np.ndarray) -> np.ndarray:
+    """Numbers of events and of states that there is room for at first."""
+    samples = 0
+    if asked.every:
+        samples = steps.size // asked.every + int(limits[1] * (1 - limits[2]))
+    expected = _FIRST + steps.size // _SAMPLES_PER_EVENT
+    return np.array([expected, samples and samples + 2 * expected * int(limits[3]) + _FIRST])
 
 
 class Motions:
@@ -65,7 +85,7 @@ class Motions:
         self.held = held(self.problem)
         self.watched = watched_of(structure, self.problem, drive)
 
-    def _limits(self, asked: Asked, events: bool) -> tuple[np.ndarray, np.ndarray]:
+    def limits_of(self, asked: Asked, events: bool) -> tuple[np.ndarray, np.ndarray]:
         """Lengths of the intervals, and the limits of `follow_record`."""
         steps = self.drive.steps.copy()
         if asked.after is None:
@@ -74,6 +94,22 @@ class Motions:
         if count:
             steps[-1] = asked.after / count
         return steps, np.array([asked.every, count, 0, events])
+
+    def terms_of(self, scale: float, steps: np.ndarray) -> np.ndarray:
+        """Polynomials of the channels over intervals of these lengths, of which the last may be another."""
+        terms = self.drive.terms * scale
+        if self.drive.normal.any():  # normal loads are no loads
+            normal = self.drive.normal.any(axis=0)
+            terms[:, normal] = self.drive.terms[:, normal]
+        if steps[-1] != self.drive.steps[-1]:
+            terms[-1, :, 1] *= steps[-1] / self.drive.steps[-1]
+        return terms
+
+    def at(self, beta: float, mu: float, scale: float, asked: Asked, events: bool) -> Found:
+        """Follow one motion at a friction ratio and a static-to-kinetic ratio; see `follow`."""
+        groups = self.structure.system.contact_system.groups
+        kinetic, static = np.array([group.friction(beta, mu) for group in groups], dtype=float).T
+        return self.follow(kinetic, static, scale, asked, events)
 
     def follow(
         self,
@@ -89,23 +125,14 @@ class Motions:
         events : whether states at events are kept, where any are
         rows : the watched quantities whose peaks are kept
         """
-        steps, limits = self._limits(asked, events and asked.every > 0)
-        terms = self.drive.terms * scale
-        if self.drive.normal.any():  # normal loads are no loads
-            normal = self.drive.normal.any(axis=0)
-            terms[:, normal] = self.drive.terms[:, normal]
-        if limits[2] == 0 and steps[-1] != self.drive.steps[-1]:
-            terms[-1, :, 1] *= steps[-1] / self.drive.steps[-1]
+        steps, limits = self.limits_of(asked, events and asked.every > 0)
+        terms = self.terms_of(scale, steps)
         friction = Friction(np.ascontiguousarray(kinetic), np.ascontiguousarray(static))
-        start = _starting(self.structure, asked.start)
+        start = starting(self.structure, asked.start)
         bed = self.held.bed
-        samples = 0
-        if asked.every:
-            samples = steps.size // asked.every + int(limits[1] * (1 - limits[2]))
-        expected = _FIRST + steps.size // _SAMPLES_PER_EVENT
-        room = np.array([expected, samples and samples + 2 * expected * int(limits[3]) + _FIRST])
+        room = room_for(asked, steps, limits)
         weights = np.ascontiguousarray(self.watched.weights[rows])
-        rounding = self._rounding(static, scale)[rows]
+        rounding = self.rounding_of(static, scale)[rows]
         lengths = len(np.unique(steps))
         lengths = lengths if lengths <= _MOST_LENGTHS else 0
         course = Course(np.ascontiguousarray(terms), steps, self.drive.times, self.drive.jumps, self.ties)
@@ -125,26 +152,44 @@ class Motions:
             room = np.maximum(room, kept.counts)
         motion = memory.motion
         state = motion.state[:2, : problem.squares.size]
-        end, slept = (self._time(k, steps) for k in (done, asleep))
+        end, slept = (self.time_after(k, steps) for k in (done, asleep))
         found = Found(
             int(status), kept, memory.counts, state, motion.sense, end, slept if asleep >= 0 else np.nan, None
         )
         return found._replace(place=self._place(found))
 
-    def _rounding(self, static: np.ndarray, scale: float) -> np.ndarray:
-        """Rounding errors of the watched quantities, from the sizes of what they are sums of."""
+    def rounding_of(self, static: np.ndarray, scale: float, further: Sequence[np.ndarray] = ()) -> np.ndarray:
+        """Rounding errors of the watched quantities, from the sizes of what they are sums of.
+
+        further : rows by the modes of forces beside those in contacts
+        """
         problem = self.problem
         size = problem.sizes[0] * abs(scale)
         loads = np.abs(self.drive.terms).sum(axis=2).max(axis=0) * max(1.0, abs(scale))
         modes = np.full(problem.squares.size, size)
         forces = np.minimum(static, float(np.abs(problem.push).sum(axis=0) @ loads))
-        units = np.concatenate((modes, modes * problem.rates[0], forces, loads))
+        others = [np.abs(one).sum(axis=1) * size for one in further]
+        units = np.concatenate((modes, modes * problem.rates[0], forces, *others, loads))
         return _ROUNDING * (np.abs(self.watched.weights) @ units)
 
-    def _time(self, intervals: int, steps: np.ndarray) -> float:
+    def time_after(self, intervals: int, steps: np.ndarray) -> float:
         """Time after a number of intervals."""
         last = steps.size - 1
         return float(self.drive.times[min(intervals, last)] + max(0, intervals - last) * steps[-1])
+
+    def energy(self, q: np.ndarray, p: np.ndarray, f: np.ndarray, opened: Opened | None) -> np.ndarray:
+        """Energy of masses and springs in states (..., times), also of the springs in contacts."""
+        elastic = self.structure.spring > 0.0
+        springs = (f[elastic].T ** 2 / self.structure.spring[elastic]).sum(axis=-1)
+        return np.asarray(0.5 * ((p**2).sum(axis=0) + self.problem.squares @ q**2 + springs))
+
+    def further_scalars(self, one: Found) -> dict[str, np.ndarray]:
+        """Numbers of one motion that only some systems have."""
+        return {}
+
+    def further_traces(self, one: Found, values: np.ndarray) -> dict[str, np.ndarray]:
+        """Histories that only some systems have, from those of the watched quantities."""
+        return {}
 
     def state_at_end(self, one: Found) -> np.ndarray:
         """q, q' and forces of springs at the end."""

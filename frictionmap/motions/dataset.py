@@ -17,6 +17,7 @@ from ..general.dataset import refuse_static
 from ..jobs import Progress, Watch, run_counted
 from ..model.system import System
 from ..model.variations import checked_variations
+from ..phases.dataset import spring_coordinates
 from ..units.scales import Scales, Units, scales_of
 from ..version import __version__
 from .averages import asked_averages, averages_of, describe_averages
@@ -25,6 +26,7 @@ from .channels import drive_of
 from .energies import energies_over_time
 from .further_axes import axis_coordinates, part_of_progress, stacked
 from .holding import largest_forces
+from .opening import OpeningMotions
 from .origins import record_attributes
 from .record import Record, checked_records
 from .scaling import friction_ratios, motion_scales, scale_of
@@ -220,7 +222,7 @@ def _motions(
         _axis(wanted.mu, "mu", least=1.0),
         _axis(beta, "beta", least=0.0),
     )
-    structure = structure_of(system)
+    structure = structure_of(system, True)
     refuse_static(structure.system.contact_system, grid.mu)
     averages = asked_averages(wanted.statistics, grid.records[0].unit)
     every = _every("all" if averages and wanted.samples == "none" else wanted.samples, grid)
@@ -228,7 +230,8 @@ def _motions(
     single = int(np.prod(grid.shape)) == 1 and not several
     if not isinstance(wanted.beta_hold, bool):
         raise InputError("beta_hold", f"must be true or false; got {checks.one_line(wanted.beta_hold)}")
-    holds = wanted.beta_hold and not asked.start.moves
+    opens = structure.system.contact_system.has_phases
+    holds = wanted.beta_hold and not asked.start.moves and not opens
     found = _follow(structure, grid, scales, asked, (single, holds), threads, progress, watch)
     variables, coords = _labelled(structure, grid, asked, found, single)
     attrs = {
@@ -301,8 +304,9 @@ def _follow(
     """Follow all motions; wanted: the states at events, and the forces with all contacts held."""
     general = structure.system.contact_system
     factors = [scale_of(one, scales) for one in grid.records]
+    kind = OpeningMotions if general.has_phases else Motions
     motions = [
-        Motions(structure, drive_of(structure.system, one, factor))
+        kind(structure, drive_of(structure.system, one, factor))
         for one, factor in zip(grid.records, factors, strict=True)
     ]
     each = [asked._replace(after=asked.after and asked.after * factor.time) for factor in factors]
@@ -312,9 +316,7 @@ def _follow(
 
     def task(i: int, k: int, m: int, b: int) -> Callable[[], None]:
         def run() -> None:
-            pairs = [group.friction(grid.beta[b], grid.mu[m]) for group in general.groups]
-            kinetic, static = np.array(pairs, dtype=float).T
-            found[i, k, m, b] = motions[i].follow(kinetic, static, float(grid.scale[k]), each[i], single)
+            found[i, k, m, b] = motions[i].at(grid.beta[b], grid.mu[m], float(grid.scale[k]), each[i], single)
 
         return run
 
@@ -348,23 +350,18 @@ def _peaks(structure: Structure, motions: Motions, one: Found) -> dict[str, np.n
     return found
 
 
-def _energy(structure: Structure, motions: Motions, q: np.ndarray, p: np.ndarray, f: np.ndarray) -> float:
-    springs = structure.spring > 0.0
-    stored = 0.5 * float((f[springs] ** 2 / structure.spring[springs]).sum())
-    return 0.5 * float(p @ p + motions.problem.squares @ q**2) + stored
-
-
 def _scalars(structure: Structure, motions: Motions, one: Found, asked: Asked) -> dict[str, Any]:
     """Numbers of one motion: of all, of each contact, of each mass."""
     kept, phi = one.kept, structure.modal.phi
     elastic = structure.spring > 0.0
     stops = kept.changes[0]
     start = asked.start
-    energy = _energy(structure, motions, one.state[0], one.state[1], kept.forces)
-    before = _energy(structure, motions, start.q, start.p, start.f)
+    q, p = one.state
+    energy = float(motions.energy(q, p, kept.forces, one.opened))
+    before = float(motions.energy(start.q, start.p, start.f, one.opened))
     walls = float(kept.works[1] + kept.record.works[1].sum())
     rests = one.place is not None
-    return _peaks(structure, motions, one) | {
+    return _peaks(structure, motions, one) | motions.further_scalars(one) | {
         "residual": phi @ one.place if rests else np.full(len(phi), np.nan),
         "contact_residual": motions.contact_places(one) if rests else np.full(elastic.size, np.nan),
         "stops": np.where(elastic, np.nan, stops), "slips": np.where(elastic, stops, np.nan),
@@ -392,15 +389,17 @@ def _traces(structure: Structure, motions: Motions, one: Found, energies: bool) 
         slider = np.where(kt > 0.0, z - f / kt, np.nan)
     if energies:
         still = np.where(kt > 0.0, slider, z)
-        found = energies_over_time(structure, motions.problem.squares, motions.problem.belt, states, still)
+        stored = motions.energy(columns[:m], columns[m : 2 * m], f, one.opened)
+        found = energies_over_time(structure, stored, motions.problem.belt, states, still)
     else:
         found = {}
-    return found | {
+    found |= {
         "time": states[0], "x": values[places["x"]], "v": structure.modal.phi @ columns[m : 2 * m],
         "acceleration": values[places["acceleration"]], "z": z, "friction": f,
         "direction": one.kept.senses[: one.kept.counts[1]].T, "y": slider,
-        "drive": columns[2 * m + contacts],
+        "drive": columns[-motions.problem.push.shape[1]],
     }  # fmt: skip
+    return found | motions.further_traces(one, values)
 
 
 def _stacked(values: list[np.ndarray], shape: tuple[int, ...], fill: float) -> np.ndarray:
@@ -492,6 +491,8 @@ def _coordinates(structure: Structure, grid: Grid) -> dict[str, xr.Variable]:
         "record": np.arange(1, len(grid.records) + 1), "scale": grid.scale, "mu": grid.mu,
         "beta": grid.beta, "dof": np.array(structure.system.dofs.numbers),
     }  # fmt: skip
+    if general.springs:
+        own |= {name: one.values for name, one in spring_coordinates(structure.system).items()}
     names = [one.name or one.quantity for one in grid.records]
     own["record_name"] = np.array(names, dtype=np.str_)
     if general.count > 1:

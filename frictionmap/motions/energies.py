@@ -9,7 +9,7 @@ _GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
 
 
 def energies_over_time(
-    structure: Structure, squares: np.ndarray, belt: np.ndarray, states: np.ndarray, slider: np.ndarray
+    structure: Structure, stored: np.ndarray, belt: np.ndarray, states: np.ndarray, slider: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Energies at the states of a motion, which include both sides of all events.
 
@@ -18,19 +18,17 @@ def energies_over_time(
 
     Parameters
     ----------
-    squares : (m,) squared frequencies of the modes
+    stored : (times,) energy of masses and springs
     belt : (N,) velocities of the walls
-    states : (1 + 2 m + N + channels, times) time, q, q', forces of the contacts
+    states : (1 + 2 m + N or more, times) time, q, q', friction forces of the contacts
     slider : (N, times) places of what slides: of the contact, or of the slider of one with a spring
     """
-    m, contacts = squares.size, belt.size
+    m, contacts = structure.modal.squares.size, belt.size
     time, q, p = states[0], states[1 : 1 + m], states[1 + m : 1 + 2 * m]
     force = states[1 + 2 * m : 1 + 2 * m + contacts]
-    elastic = structure.spring > 0.0
-    springs = (force[elastic] ** 2 / structure.spring[elastic, np.newaxis]).sum(axis=0)
     slid = np.diff(slider, axis=1) - belt[:, np.newaxis] * np.diff(time)
     return {
-        "stored_energy": 0.5 * ((p**2).sum(axis=0) + squares @ q**2 + springs),
+        "stored_energy": stored,
         "lost_friction": _summed(0.5 * (force[:, 1:] + force[:, :-1]) * slid),
         "lost_damping": _summed(_damped(structure.modal.damping, time, q, p)),
     }

@@ -1,5 +1,6 @@
 """A system under channels as arrays for the kernels, and the quantities that are watched of it."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -24,13 +25,14 @@ class Structure(NamedTuple):
 class Watched(NamedTuple):
     """Where quantities stand in the table of weights."""
 
-    weights: np.ndarray  # (Q, 2 m + N + D)
+    weights: np.ndarray  # (Q, 2 m + N + D), or with further forces before the channels
     places: dict[str, slice]
 
 
-def structure_of(system: System) -> Structure:
-    """Modes of a system in the form that the general engine takes."""
-    refuse_phases(system, "compute motions under records")
+def structure_of(system: System, opens: bool = False) -> Structure:
+    """Modes of a system; opens: contacts that open and piecewise linear springs may be there."""
+    if not opens:
+        refuse_phases(system, "bound motions under records")
     refuse_modes(system, "compute motions under records")
     refuse_banks(system, "compute motions under records")
     system = in_general_form(system)
@@ -84,16 +86,23 @@ def problem_of(structure: Structure, drive: Drive) -> Problem:
     )  # fmt: skip
 
 
-def watched_of(structure: Structure, problem: Problem, drive: Drive) -> Watched:
-    """The quantities whose peaks are kept, as sums of q, q', f and L."""
-    modal = structure.modal
+def watched_of(
+    structure: Structure, problem: Problem, drive: Drive, further: Mapping[str, np.ndarray] | None = None
+) -> Watched:
+    """The quantities whose peaks are kept, as sums of q, q', f, further forces and L.
+
+    further : vectors (..., m) of further forces by name, which are watched
+    """
+    modal, others = structure.modal, further or {}
     n, m = modal.phi.shape
     contacts, channels = structure.spring.size, drive.push.shape[1]
-    q, p = np.eye(m, 2 * m + contacts + channels), np.eye(m, 2 * m + contacts + channels, m)
-    f = np.eye(contacts, 2 * m + contacts + channels, 2 * m)
-    load = np.eye(channels, 2 * m + contacts + channels, 2 * m + contacts)
+    vectors = np.concatenate([modal.chi, *others.values()])
+    size = 2 * m + len(vectors) + channels
+    q, p = np.eye(m, size), np.eye(m, size, m)
+    forces = np.eye(len(vectors), size, 2 * m)
+    f, load = forces[:contacts], np.eye(channels, size, size - channels)
     inertia = (
-        -problem.squares[:, np.newaxis] * q - problem.damping @ p + problem.push @ load - modal.chi.T @ f
+        -problem.squares[:, np.newaxis] * q - problem.damping @ p + problem.push @ load - vectors.T @ forces
     )
     restoring = modal.stiffness @ modal.phi @ q + modal.viscous @ modal.phi @ p
     rows = {
@@ -104,6 +113,10 @@ def watched_of(structure: Structure, problem: Problem, drive: Drive) -> Watched:
         "base_force": -restoring.sum(axis=0, keepdims=True),
         "spring_force": _spring_forces(structure) @ q,
     }
+    begin = contacts
+    for name, one in others.items():
+        rows[name] = forces[begin : begin + len(one)]
+        begin += len(one)
     places, begin = {}, 0
     for name, row in rows.items():
         places[name] = slice(begin, begin + len(row))

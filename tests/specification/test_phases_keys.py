@@ -203,9 +203,7 @@ def command(tmp_path, monkeypatch, capsys):
 
 def test_functions_that_do_not_take_them_name_the_key():
     system = two(contacts=[{"normal": NORMAL}])
-    record = fm.Record([0.0, 1.0, 0.0], dt=0.1, quantity="force", mass=1)
     for call in (
-        lambda: fm.history(system, record, beta=[1.0]),
         lambda: fm.borders(system, r=[0.5, 1.0], beta=[0.1, 1.0]),
         lambda: fm.continuous_motion(system, 0.5, 0.1),
         lambda: fm.design.no_stop(system, (0.5, 1.5)),

@@ -187,7 +187,7 @@ def _end_step(problem, row, motion, end, kept):
 
 
 @kernel
-def _add_up(kept):
+def add_up(kept):
     """Fill the sums of the units, and of the moduli of their bounds."""
     width = kept.sums.shape[1]
     for r in range(0, width, LANES):
@@ -220,6 +220,26 @@ def keep_end(row, kept, i, value):
 
 
 @kernel
+def keep_peak(scratch, begin, end, length, size, kept, i):
+    """Include quantity i in the present step; its series is in the scratch.
+
+    Parameters
+    ----------
+    scratch : (..., WIDTH)
+    begin, end : where the step begins in the interval, and its end in x after it
+    length : of the interval
+    size : displacement beside which a variation is rounding error
+    kept, i : Kept and the quantity
+    """
+    kept.peaks[LOW_AT, i] = kept.peaks[HIGH_AT, i] = -1.0
+    keep_range(scratch, VALUE, end, size, kept.peaks, i, scratch)
+    for side in range(2):
+        at = kept.peaks[LOW_AT + side, i]
+        if at >= 0.0:
+            kept.times[side, i] = kept.clock[0] + (begin + at) * length
+
+
+@kernel
 def _keep_peaks(problem, row, motion, begin, end, kept):
     """Include the watched quantities of the present step.
 
@@ -229,21 +249,16 @@ def _keep_peaks(problem, row, motion, begin, end, kept):
     begin, end : where the step begins in the interval, and its end in x after it
     """
     _end_step(problem, row, motion, end, kept)
-    _add_up(kept)
+    add_up(kept)
     for i in range(kept.weights.shape[0]):
         if stays_within(kept, i, kept.sums[BEGIN, i], kept.sums[END, i], kept.sums[BEND, i]):
             continue
         fill_watched(problem, row, motion, kept, i)
-        kept.peaks[LOW_AT, i] = kept.peaks[HIGH_AT, i] = -1.0
-        keep_range(motion.scratch, VALUE, end, row.numbers[SIZE], kept.peaks, i, motion.scratch)
-        for side in range(2):
-            at = kept.peaks[LOW_AT + side, i]
-            if at >= 0.0:
-                kept.times[side, i] = kept.clock[0] + (begin + at) * row.numbers[H]
+        keep_peak(motion.scratch, begin, end, row.numbers[H], row.numbers[SIZE], kept, i)
 
 
 @kernel
-def _integral(rate, place, end, terms):
+def integral_by_slope(rate, place, end, terms):
     """Integral over [0, end] of the derivative of the first series, of `terms` terms, times the second.
 
     rate, place : (WIDTH,) series
@@ -293,11 +308,11 @@ def _keep_works(problem, row, motion, end, kept):
         if fill_pushed(problem, motion, d):
             pushed = scratch[VALUE]
             ends = value_at(scratch, VALUE, end) * value_at(series, modes + d, end) - pushed[0] * wall[0]
-            kept.works[OF_LOAD] += ends - _integral(wall, pushed, end, terms)
+            kept.works[OF_LOAD] += ends - integral_by_slope(wall, pushed, end, terms)
         for j in range(contacts):
             if problem.base[j, d] != 0.0:
                 force = series[force_row(problem, j)]
-                kept.works[OF_BASE] -= problem.base[j, d] * _integral(wall, force, end, terms)
+                kept.works[OF_BASE] -= problem.base[j, d] * integral_by_slope(wall, force, end, terms)
 
 
 @kernel
@@ -344,6 +359,17 @@ def keep_ends(problem, motion, x, kept):
 
 
 @kernel
+def list_event(kept, time, contact, kind):
+    """List an event."""
+    k = kept.counts[0]
+    kept.counts[0] = k + 1
+    if k < kept.events.shape[0]:
+        kept.events[k, TIME] = time
+        kept.events[k, CONTACT] = contact
+        kept.events[k, KIND] = kind
+
+
+@kernel
 def list_changes(row, motion, before, begin, kept):
     """List the contacts whose sense is not that of `before`, at `begin` in the interval."""
     for j in range(motion.sense.size):
@@ -356,9 +382,4 @@ def list_changes(row, motion, before, begin, kept):
         time = kept.clock[0] + begin * row.numbers[H]
         if kind == START and not (kept.first[0] <= time):
             kept.first[0] = time
-        k = kept.counts[0]
-        kept.counts[0] = k + 1
-        if k < kept.events.shape[0]:
-            kept.events[k, TIME] = time
-            kept.events[k, CONTACT] = j
-            kept.events[k, KIND] = kind
+        list_event(kept, time, j, kind)

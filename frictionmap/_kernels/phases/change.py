@@ -132,11 +132,11 @@ def _change_friction(problem, row, cell, motion, j, which):
 
 
 @kernel
-def _wake_tied(problem, row, cell, motion, who):
+def wake_tied(problem, row, cell, motion, order):
     """Begin the motion of elastic contacts at the limit that a rigid one has kept at rest: slip or not.
 
-    The velocity begins at 0, with mu = 1 the acceleration too; its first term that is not 0 decides, beside
-    that of the limit.
+    The velocity begins at 0, with mu = 1 the acceleration too, and `order` is 2; where the force drops it is
+    1.  The first term that is not 0 decides, beside that of the limit.
     """
     began = False
     for j in range(problem.law.size):
@@ -147,8 +147,6 @@ def _wake_tied(problem, row, cell, motion, who):
         if not began:
             begin_terms(problem, row, cell, motion, 4)
             began = True
-        drops = who < problem.law.size and cell.static[who] > 1.0
-        order = 1 if drops else 2
         sense = 1 if motion.f[j] > 0.0 else -1
         rate = dot(problem.chi, j, motion.terms.moves[order + 1])
         rate -= problem.moved[j] * motion.drive[order + 1, problem.squares.size]
@@ -180,7 +178,8 @@ def change_phase(problem, row, cell, motion, who, what):
         found = _change_friction(problem, row, cell, motion, who, what)
     slave_forces(problem, cell, motion)
     found = factor_held(problem, row, motion) and found
-    _wake_tied(problem, row, cell, motion, who)
+    drops = who < contacts and cell.static[who] > 1.0
+    wake_tied(problem, row, cell, motion, 1 if drops else 2)
     rest_tied(problem, cell, motion)
     return found
 

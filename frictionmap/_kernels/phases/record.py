@@ -57,7 +57,7 @@ def _range_of(problem, motion, at, end, into):
 
 
 @kernel
-def _integral_of_product(series, a, b, end):
+def integral_of_product(series, a, b, end):
     """Integral over [0, end] of the product of two series."""
     sum_ = 0.0
     for i in range(_NODES.size):
@@ -88,7 +88,7 @@ def _put_contact(problem, row, cell, motion, j, end):
     elastic, held = problem.law[j] == ELASTIC, is_held(problem, motion, j)
     if held and not elastic and row.belt[j] == 0.0 and problem.moved[j] == 0.0:
         return
-    record.work[j] += _integral_of_product(series, f, w, end)
+    record.work[j] += integral_of_product(series, f, w, end)
     if row.belt[j] != 0.0:
         total = 0.0
         for k in range(TERMS - 1, -1, -1):

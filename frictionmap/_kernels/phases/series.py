@@ -101,7 +101,7 @@ def _put_forces(problem, row, cell, motion, terms, k, driven):
 
 
 @inner_kernel
-def _normal_change(problem, cell, motion, terms, k, j, driven):
+def normal_change(problem, cell, motion, terms, k, j, driven):
     """Term k of N - max(0, N0) of a contact.
 
     Parameters
@@ -178,7 +178,7 @@ def expand(problem, row, cell, motion, terms, count, driven):
             for i in range(modes):
                 moves[k + 2, i] -= row.reaction[j, i] * force
             if problem.presses[j]:
-                change = _normal_change(problem, cell, motion, terms, k, j, driven)
+                change = normal_change(problem, cell, motion, terms, k, j, driven)
                 for i in range(modes):
                     moves[k + 2, i] -= row.push[j, i] * change
         for s in range(problem.along.shape[0]):

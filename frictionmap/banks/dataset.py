@@ -45,7 +45,8 @@ def solve_cells(
     r, beta = axes["r"], axes["beta"]
     check_ratios(system, r)
     masses, count = any(is_of_masses(name) for name in names), checks.threads(threads)
-    places = any(depends_on_places(name, system.contact_system) for name in names)
+    # an element that only touches its limit has another multiplier than one that does not
+    places = any(name == "multiplier" or depends_on_places(name, system.contact_system) for name in names)
 
     def solve(rows: slice, progress: Progress | None) -> dict[str, np.ndarray]:
         at = r[rows]

@@ -5,7 +5,7 @@ import numpy as np
 from ..general.problem import is_symmetric, static_offset
 from ..jobs import Watch
 from ..model.settings import Solver
-from ..model.sizes import Sizes, Wanted
+from ..model.sizes import Sizes, Wanted, sizes_of_points
 from ..model.system import System
 from .dataset import solve_cells
 
@@ -37,7 +37,8 @@ def sizes_at(
     watch: Watch | None,
 ) -> Sizes:  # fmt: skip
     """Sizes at points (k,): rows of a grid with a beta of their own."""
-    points, back = np.unique(np.stack((r, beta)), axis=1, return_inverse=True)
-    axes = {"mu": np.array([mu]), "r": points[0], "beta": points[1, :, np.newaxis]}
-    found = sizes_on_grid(system, wanted, axes, solver, threads, watch)
-    return Sizes(*(values[back.ravel(), 0] for values in found))
+
+    def on_grid(axes: dict[str, np.ndarray]) -> Sizes:
+        return sizes_on_grid(system, wanted, axes, solver, threads, watch)
+
+    return sizes_of_points(on_grid, r, beta, mu)

@@ -6,7 +6,7 @@ from .. import regimes
 from .._kernels.general.fill import Cells
 from ..jobs import Watch
 from ..model.settings import Solver
-from ..model.sizes import Sizes, Wanted
+from ..model.sizes import Sizes, Wanted, sizes_of_points
 from ..model.system import System
 from .held import least_static_friction, stick_scales
 from .maps import solve_cells
@@ -55,7 +55,8 @@ def sizes_at(
     watch: Watch | None,
 ) -> Sizes:  # fmt: skip
     """Sizes at points (k,): rows of a grid with a beta of their own."""
-    points, back = np.unique(np.stack((r, beta)), axis=1, return_inverse=True)
-    axes = {"mu": np.array([mu]), "r": points[0], "beta": points[1, :, np.newaxis]}
-    found = sizes_on_grid(system, wanted, axes, solver, threads, watch)
-    return Sizes(*(values[back.ravel(), 0] for values in found))
+
+    def on_grid(axes: dict[str, np.ndarray]) -> Sizes:
+        return sizes_on_grid(system, wanted, axes, solver, threads, watch)
+
+    return sizes_of_points(on_grid, r, beta, mu)

@@ -17,6 +17,9 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 #: A structure that is no chain.
 _GIVEN = {"anyOf": [{"required": [name]} for name in ("matrices", "modes", "beam", "plate")]}
 
+#: One with a frequency scale: a ring of sectors is given by matrices, too, but its masses are counted.
+_SCALED: Schema = {"anyOf": [*_GIVEN["anyOf"], {"required": ["sectors"]}]}
+
 #: What keys of [system] say of each other, in the words of the errors of `System`.
 _TOGETHER: list[Schema] = [
     {"dependentSchemas": {"matrices": {"properties": {"mass_ratios": False, "stiffness_ratios": False}}}},
@@ -35,7 +38,7 @@ _TOGETHER: list[Schema] = [
         },
         "then": {"properties": {"stiffness_ratios": False, "matrices": False}},
     },
-    {"if": {"required": ["frequency_scale"]}, "then": _GIVEN},
+    {"if": {"required": ["frequency_scale"]}, "then": _SCALED},
     {"dependentSchemas": {"rayleigh": {"properties": {"damping_ratios": False}}}},
     {
         "if": {"not": _GIVEN},  # a chain has no labels

@@ -61,6 +61,19 @@ def test_blades_under_engine_order_1_move_alike():
         np.testing.assert_allclose(found, np.broadcast_to(found[..., :1], found.shape), rtol=1e-9)
 
 
+def test_blades_of_a_disk_whose_dampers_stick():
+    """Engine order 4 of 24 blades: neighbours move 60 degrees apart: springs between them act fully."""
+    disk = config("bladed-disk").system
+    r = np.array([1.0, 1.1, 1.17])
+    ds = fm.sweep(disk, r, [1e3], outputs=["contact_regime", "amplitude"])
+    assert (ds.contact_regime == STUCK).all()
+    blade, disks, dampers = 6.0e6, 2.4e5, 1.2e6 + 0.6e6
+    inertia = 2.4 * (500.0 * np.pi) ** 2
+    lost = 2.0 * 0.001 * np.sqrt((blade + disks) * inertia) * r
+    wanted = blade / np.abs(blade + disks + dampers - inertia * r**2 + 1j * lost)
+    np.testing.assert_allclose(ds.amplitude.isel(mu=0, beta=0), np.tile(wanted, (24, 1)).T, rtol=1e-9)
+
+
 def test_a_bank_of_elements_in_parallel():
     """Forces of the elements are those of elastic, perfectly plastic ones along the motion of the joint."""
     beta, stiffness = 25.0, 4.0 / 6.0

@@ -2,20 +2,22 @@
 
 Every round starts with an empty cache of kernels, and every measurement is a new process. The map of T Fig.
 3.12 represents one mass. A structure (T Fig. 7.7, two damped masses) has kernels of its own, which take
-longer to compile. The second run must write the same file as the first. The quick form compiles nothing: it
-has the usual cache, and no runs of a structure.
+longer to compile. The second run must write the same file as the first. The peak memory of the maps is that
+of their processes. The quick form compiles nothing: it has the usual cache, and no runs of a structure.
 """
 
 import os
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
+from typing import NamedTuple
 
 import xarray as xr
 
 from .. import ROOT
-from ..report.record import pinned, save, spread, table, timed
+from ..report.record import pinned, save, spread, table
 
 ONE_MASS, STRUCTURE = (ROOT / "configs" / name for name in ("fig-3-12.toml", "fig-7-7-zeta-0.1.toml"))
 
@@ -28,20 +30,34 @@ IMPORT, IMPORT_SWEEP, HELP = "import frictionmap", "import of frictionmap.sweep"
 FIRST, SECOND, PLOT = "map of one mass, first run", "map of one mass, second run", "plot of the map"
 FIRST_STRUCTURE, SECOND_STRUCTURE = "map of two masses, first run", "map of two masses, second run"
 
+#: Processes whose memory is reported: they take more than this one.
+MAPS = {FIRST, SECOND, FIRST_STRUCTURE, SECOND_STRUCTURE}
 
-def _process(arguments: list[str], cache: str | None, folder: str) -> float:
-    """Seconds of one new Python process; without a cache of its own it has the usual one."""
+
+class Taken(NamedTuple):
+    """What a process took."""
+
+    seconds: float
+    memory: float  # at its peak [MB]; the memory of this process is counted if it is larger
+
+
+def _process(arguments: list[str], cache: str | None, folder: str) -> Taken:
+    """Run one new Python process; without a cache of its own it has the usual one."""
     search = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     environment = {**os.environ, "PYTHONPATH": search} | ({"NUMBA_CACHE_DIR": cache} if cache else {})
     command = [sys.executable, *arguments]
-    seconds, _ = timed(
-        lambda: subprocess.run(command, env=environment, cwd=folder, check=True, capture_output=True)
-    )
-    return seconds
+    began = time.perf_counter()
+    process = subprocess.Popen(command, env=environment, cwd=folder, stdout=subprocess.DEVNULL)
+    _, status, used = os.wait4(process.pid, 0)
+    seconds = time.perf_counter() - began
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if status:
+        raise RuntimeError(f"{' '.join(command)} ended with {process.returncode}")
+    return Taken(seconds, used.ru_maxrss / 1024.0)
 
 
-def _both_runs(config: Path, cache: str | None, folder: str) -> tuple[float, float]:
-    """Seconds of the first and the second run of a map, which must write the same file."""
+def _both_runs(config: Path, cache: str | None, folder: str) -> tuple[Taken, Taken]:
+    """Measure the first and the second run of a map, which must write the same file."""
     taken = [
         _process(["-m", "frictionmap", "map", str(config), "-o", name, "--threads", "1"], cache, folder)
         for name in ("first.nc", "second.nc")
@@ -55,8 +71,8 @@ def _both_runs(config: Path, cache: str | None, folder: str) -> tuple[float, flo
     return taken[0], taken[1]
 
 
-def _round(structure: bool, quick: bool) -> dict[str, float]:
-    """Seconds of each process, in the order in which a new user starts them."""
+def _round(structure: bool, quick: bool) -> dict[str, Taken]:
+    """Measure each process, in the order in which a new user starts them."""
     taken = {}
     with tempfile.TemporaryDirectory() as empty, tempfile.TemporaryDirectory() as folder:
         cache = None if quick else empty
@@ -76,15 +92,18 @@ def run(quick: bool, results: Path) -> dict:
     """Measure, print and save."""
     with pinned():  # the processes started inherit it
         rounds = [_round(k < STRUCTURE_ROUNDS[quick], quick) for k in range(ROUNDS[quick])]
-    seconds = {name: spread([one[name] for one in rounds if name in one]) for name in rounds[0]}
+    seconds = {name: spread([one[name].seconds for one in rounds if name in one]) for name in rounds[0]}
+    memory = {
+        name: max(one[name].memory for one in rounds if name in one) for name in rounds[0] if name in MAPS
+    }
     table(
-        ("fresh process", "seconds", "least", "most", "runs"),
+        ("fresh process", "seconds", "least", "most", "runs", "MB"),
         [
-            (name, entry["median"], entry["least"], entry["most"], entry["runs"])
+            (name, entry["median"], entry["least"], entry["most"], entry["runs"], memory.get(name, ""))
             for name, entry in seconds.items()
         ],
     )
-    content: dict = {"seconds": seconds}
+    content: dict = {"seconds": seconds, "MB": memory}
     if quick:
         content["skipped"] = "empty caches and runs of a structure: compiling takes longer than a quick look"
         print(f"skipped, {content['skipped']}")

@@ -400,10 +400,12 @@ def _coupling_lines(coupling: dict) -> list[str]:
 
 
 def _start_rows(startup: dict) -> list[tuple[str, ...]]:
+    memory = startup.get("MB", {})
     return [
         (
             _WORDS.get(name, name),
-            f"{duration(entry['median'])} ({duration(entry['least'])} to {duration(entry['most'])})",
+            f"{duration(entry['median'])} ({duration(entry['least'])} to {duration(entry['most'])})"
+            + (f", {memory[name]:.0f} MB" if name in memory else ""),
         )
         for name, entry in startup["seconds"].items()
     ]
@@ -487,7 +489,9 @@ def block(results: Path) -> str:
         lines += ["", "### Computing time and memory"]
     lines += markdown(("task", "time or memory"), growth)
     if "startup" in found:
-        lines += markdown(("fresh process", "time (minimum to maximum)"), _start_rows(found["startup"]))
+        lines += markdown(
+            ("fresh process", "time (minimum to maximum), peak memory"), _start_rows(found["startup"])
+        )
     return "\n".join(lines)
 
 

@@ -15,6 +15,7 @@ import pytest
 from conftest import ROOT
 from measuring import WITHOUT_FIGURE, python, spreads
 
+import benchmarks.__main__ as command
 from benchmarks.__main__ import BENCHMARKS
 from benchmarks.measures import first_minute, histories
 from benchmarks.peers.shaken import ScipyShaken
@@ -99,6 +100,19 @@ def test_results_of_different_commits_are_marked(tmp_path):
     assert "startup: 0123456789; banks: abcdef0123" in text
     (tmp_path / "banks.json").unlink()
     assert "All tables are of commit 0123456789" in results_page.block(tmp_path)
+
+
+def test_several_benchmarks_continue_with_what_is_missing(monkeypatch, tmp_path, capsys):
+    taken = {"laws": 3.0, "banks": math.nan}  # the second fails, and the third runs all the same
+    monkeypatch.setattr(command, "kept", lambda name, _: name == "peers")
+    monkeypatch.setattr(command, "_run_apart", lambda name, _: taken.get(name, 5.0))
+    monkeypatch.setattr(command.signal, "signal", lambda *_: None)
+    found = command._run_all(["peers", "laws", "banks", "spectrum"], tmp_path)
+    assert list(found) == ["laws", "banks", "spectrum"]
+    said = capsys.readouterr().out.splitlines()
+    assert said[0] == "measured on this commit and machine before: peers"
+    assert said[1].endswith(f"about {-(-sum(BENCHMARKS[name] for name in found) // 60)} min")
+    assert sum(" of 3, about " in line for line in said) == 3
 
 
 def test_all_benchmarks_take_at_most_forty_minutes():

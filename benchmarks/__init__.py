@@ -5,7 +5,7 @@ python -m benchmarks NAME|all [--quick] [--results FOLDER]
 NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, continuation, laws, design,
 static, bound, large, explore, first_minute, coupling, coverage, consistency, spectrum, histories or banks:
 each is a module of that name in `measures`.  It prints tables, and writes JSON and perhaps a figure.  `all`
-takes about 40 minutes on two quiet processors, and continues after an interruption.
+states how long it will take, and continues after an interruption.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================

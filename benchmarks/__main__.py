@@ -19,7 +19,7 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
 
 #: Sub-commands: each has a module of its name in `measures` with a `run`, imported only when it is asked for.
-#: The seconds are about those of a whole run on a quiet machine with two processors, compilation included.
+#: The seconds are estimates for a whole run on a quiet machine with two processors, compilation included.
 BENCHMARKS = {
     "accuracy": 150,
     "peers": 100,

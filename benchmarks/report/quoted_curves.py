@@ -128,7 +128,7 @@ def laws_lines(laws: dict) -> list[str]:
         ),
         "",
         *(f"- Not measured: {name} ({why})." for name, why in _skipped(laws["other solvers"]).items()),
-        f"- Status of {cells['cells']:,} random cells with friction over speed: {ends}. None needs more than "
+        f"- Status of {cells['cells']:,} random cells with friction over speed: {ends}. The longest takes "
         f"{cells['cycles at most']:,} periods.",
         "",
         "![One mass: laws, opening contact, belt](../benchmarks/results/laws.png)",

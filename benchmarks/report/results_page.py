@@ -428,6 +428,11 @@ def _machine(found: dict[str, dict]) -> str:
     return f"Measured on: {'; '.join(lines)}."
 
 
+def _busy(machine: dict) -> bool:
+    """Whether much else was running; a benchmark itself takes up to all processors."""
+    return (machine["load"] or 0.0) > 1.5 * machine["processors"]
+
+
 def _commits(found: dict[str, dict]) -> str:
     """Sentences on the commits of the results; several commits, and quick forms, are named as a warning."""
     names: dict[str, list[str]] = {}
@@ -436,6 +441,8 @@ def _commits(found: dict[str, dict]) -> str:
     runs = {name: content["run"] for name, content in found.items() if "run" in content}
     quick = [name for name, run in runs.items() if run["quick"]]
     warning = f" **Quick forms, which measure little:** {', '.join(quick)}." if quick else ""
+    busy = [name for name, content in found.items() if _busy(content["machine"])]
+    warning += f" **Measured on a busy machine:** {', '.join(busy)}." if busy else ""
     if list(names) == ["not recorded"]:
         return f"The commit of these results was not recorded.{warning}"
     if len(names) == 1:

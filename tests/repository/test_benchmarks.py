@@ -99,6 +99,11 @@ def test_results_of_different_commits_are_marked(tmp_path):
     assert "different commits" in text
     assert "startup: 0123456789; banks: abcdef0123" in text
     (tmp_path / "banks.json").unlink()
+    assert "busy" not in results_page.block(tmp_path)
+    content = json.loads((tmp_path / "startup.json").read_text())
+    content["machine"]["load"] = 5.0 * content["machine"]["processors"]
+    (tmp_path / "startup.json").write_text(json.dumps(content))
+    assert "**Measured on a busy machine:** startup." in results_page.block(tmp_path)
     assert "All tables are of commit 0123456789" in results_page.block(tmp_path)
 
 

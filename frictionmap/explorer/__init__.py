@@ -12,6 +12,7 @@ views              one view: changed system, ranges of r and beta, mu
 belt_classes       motions on a belt without a load: classes of cells, and quantities that colour them
 quantities         what the cells of a map show: classes of their regime, or a quantity
 queries            queries of the page, checked like a configuration
+structure_picture  the picture of a beam or a plate with its points and contacts
 unloaded           maps on a belt without a load: cells, and limits as lines
 lines              boundaries of a view: values, and how the page draws them
 pieces             pieces of a map for the page: cells, classes, quantities, boundaries

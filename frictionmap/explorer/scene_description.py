@@ -18,6 +18,7 @@ from .pieces import marks
 from .presets import PRESETS
 from .quantities import counted_of, looks_of, quantities_of
 from .scene import Scene
+from .structure_picture import has_picture
 from .subjects import describe_subjects
 from .views import View
 
@@ -135,6 +136,7 @@ def describe_scene(scene: Scene, view: View) -> dict[str, Any]:
         "quick": view.is_quick,
         "drawing": _drawing(view),
         "unloaded": view.unloaded,
+        "structure": has_picture(scene.system),
         "goals": [] if view.unloaded else describe_goals(),
         "presets": [{"key": key, "label": preset.label} for key, preset in PRESETS.items()],
         **{key: value for key, value in description(scene, view).items() if key != "contact"},

@@ -120,6 +120,7 @@ class Page:
             "/scene": self._scene,
             "/state": self._state,
             "/ratios": self._ratios,
+            "/structure.svg": self._structure,
             "/lines": self._lines,
             "/example": self._example,
             "/map": self._map,
@@ -203,6 +204,13 @@ class Page:
         from .scene_description import describe_scene
 
         return _json(describe_scene(self.scene, read_query(self.scene, query).view))
+
+    def _structure(self, query: str, gone: Callable[[], bool]) -> Answer:
+        from .structure_picture import has_picture, structure_svg
+
+        if not has_picture(self.scene.system):
+            return _text(404, "there is no picture of this system: it is for beams and plates")
+        return Answer(200, "image/svg+xml", structure_svg(self.scene.system))
 
     def _state(self, query: str, gone: Callable[[], bool]) -> Answer:
         return _json({"compiling": self.jobs.state()})

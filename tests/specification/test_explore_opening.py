@@ -189,3 +189,15 @@ def test_points_of_a_beam_have_names_and_move(tmp_path):
     assert header["drawing"]["contacts"][0]["masses"] == [0]
     assert header["drawing"]["loaded"] == [1]
     assert "amplitude of point shaker" in [one["label"] for one in quantities]
+
+
+def test_a_beam_has_a_picture_of_its_structure(tmp_path):
+    with served(scene_from(tmp_path, BEAM)) as server:
+        assert json.loads(ask(server, "/scene")[1])["structure"]
+        status, body, headers = ask(server, "/structure.svg")
+        assert (status, headers["Content-Type"]) == (200, "image/svg+xml; charset=utf-8")
+        for name in (b"friction between point tip", b"load on point shaker"):
+            assert name in body
+    with served(scene_from(tmp_path, LAW)) as server:
+        assert not json.loads(ask(server, "/scene")[1])["structure"]
+        assert ask(server, "/structure.svg")[0] == 404

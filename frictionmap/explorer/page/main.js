@@ -152,6 +152,7 @@ class Page {
       const chosen = event.target.closest("[data-save]");
       if (chosen) this.#save(chosen.dataset.save);
     });
+    if (this.source.live && this.scene.structure) this.#offerStructure();
     this.tour = new Tour(this.scene.unloaded);
     document.addEventListener("click", (event) => {
       if (!event.target.closest("[data-tour]")) return;
@@ -170,6 +171,13 @@ class Page {
     setInterval(() => this.#lookAtWaiting(), PATIENCE);
     this.controls.offer("quantity", this.quantities, this.view);
     this.update(true);
+  }
+
+  /** A picture of the structure, which is loaded when it is opened. */
+  #offerStructure() {
+    const place = part("structure");
+    place.hidden = false;
+    place.addEventListener("toggle", () => place.open && (place.querySelector("img").src = `structure.svg${location.search}`), { once: true });
   }
 
   /** Show another view. @param {Partial<import("./address.js").View>} change */

@@ -20,6 +20,7 @@ from ..datasets.motion_labels import (
 )
 from ..datasets.schema import checked_values
 from ..errors import InputError
+from ..units.table import UNITS, handy_unit
 
 #: Width of the first column of a summary.
 _WIDTH = 34
@@ -135,9 +136,15 @@ def _listed(values: Any, unit: str = "") -> str:
 
 
 def _measured(one: xr.Dataset, name: str, measure: str, unit: str) -> str:
-    """Values in SI units where they are there, else the ratios."""
+    """Values with a unit where they are there, of lengths, forces and works a handy one, else the ratios."""
     beside = si_name(name, measure)
-    return _listed(one[beside].values, unit) if beside in one else _listed(one[name].values)
+    if beside not in one:
+        return _listed(one[name].values)
+    values = np.abs(one[beside].values)
+    if measure in ("length", "force", "work") and np.isfinite(values).any():
+        unit = handy_unit(float(values[np.isfinite(values)].max()) or 1.0, measure)
+        return _listed(one[beside].values / float(UNITS[unit].size), unit)
+    return _listed(one[beside].values, unit)
 
 
 _ROWS = (

@@ -125,6 +125,9 @@ def _found(ds: xr.Dataset, name: str, value: float) -> tuple[str, np.ndarray]:
     values = _numbers(ds, name)
     dim = str(ds[name].dims[0]) if name in ds.coords else name
     places = np.flatnonzero(np.abs(values - value) <= _SAME * np.abs(value))
+    if not places.size and values.dtype.kind in "iuf":  # as messages and summaries write it, if that is one
+        alike = [k for k, own in enumerate(values) if f"{own:g}" == f"{value:g}"]
+        places = np.array(alike if len(alike) == 1 else [], dtype=int)
     if not places.size:
         raise InputError(f"--at {name} must be one of {_values(ds, name)}; got {value:g}")
     return dim, places

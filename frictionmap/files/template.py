@@ -230,7 +230,8 @@ def short_motion(name: str, in_units: bool = True) -> str:
     short = SHORT["joined-base-wall"]
     lines = [_MOTION_HEAD.format(name=name), 'title = "One mass under a pulse of its base"\n', "[system]\n"]
     lines += [f"{line}\n" for line in short.lines(in_units)]
-    return "".join([*lines, _MOTIONS[in_units]])
+    # a pulse of acceleration leaves the base moving: dashpots to the ground would go on dragging
+    return "".join([*lines, 'damping_reference = "base"\n', _MOTIONS[in_units]])
 
 
 def section_text(section: str, keys: tuple[Key, ...], said: Mapping[str, str], what: str = "") -> str:

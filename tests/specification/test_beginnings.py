@@ -153,7 +153,14 @@ def test_the_template_of_motions_runs_with_both_commands(numbers, tmp_path, monk
     text = (tmp_path / "map.toml").read_text(encoding="utf-8")
     assert len(text.splitlines()) <= 18
     for command in ("history", "spectrum"):
-        assert main([command, "map.toml", "--quiet"]) == 0, capsys.readouterr().err
+        assert main([command, "map.toml"]) == 0, capsys.readouterr().err
+        said = capsys.readouterr().out
+        assert "remark" not in said
+        assert "ringing" not in said  # both motions come to rest
+        if numbers == "--units" and command == "history":
+            assert re.search(
+                r"half-sine, 19.6 N +largest displacement \S+ mm; stops \d+; rests at -?\S+ (mm|um)", said
+            )
         assert main(["plot", f"map-{command}.nc", "--quiet"]) == 0
 
 

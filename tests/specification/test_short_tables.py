@@ -116,6 +116,19 @@ def test_several_motions_in_time_have_a_row_each(tmp_path, capsys):
     np.testing.assert_array_equal(numbers(columns["x_2_m"]), one[: len(columns["x_2_m"])])
 
 
+def test_a_value_is_chosen_as_it_is_printed(tmp_path):
+    """With six digits, where only one value has them."""
+    record = fm.Record([0.0, 1.0, 0.0, 0.0], dt=1.0, quantity="force")
+    ds = fm.history(fm.System(damping_ratios=0.1), record, beta=[1 / 7, 2 / 7, 2 / 7 + 1e-9])
+    ds.to_netcdf(tmp_path / "motions.nc")
+    out = ["-o", str(tmp_path / "one.csv"), "--quiet", "--overwrite"]
+    assert main(["export", str(tmp_path / "motions.nc"), "--at", "beta=0.142857", *out]) == 0
+    _, columns = rows_of((tmp_path / "one.csv").read_text())
+    wanted = ds.x[0, 0, 0, 0, 0].values
+    np.testing.assert_array_equal(numbers(columns["x_1"]), wanted[: len(columns["x_1"])])
+    assert main(["export", str(tmp_path / "motions.nc"), "--at", "beta=0.285714", *out]) == 2
+
+
 def test_the_masses_of_a_map_are_columns():
     solver = fm.Solver(outputs=["regime", "amplitude", "also_reachable"])
     ds = fm.sweep(CHAIN, [0.5, 0.9], [0.1, 0.4], units=UNITS, solver=solver)

@@ -38,6 +38,19 @@ def test_peaks_over_friction_have_a_band_of_their_quartiles(suite):
     rendered(axes)
 
 
+def test_peaks_with_units_are_in_millimetres_over_newtons():
+    units = fm.Units(natural_frequency="4 Hz", load="10 N", stiffness="2 N/mm")
+    record = fm.Record.pulse("half-sine", "10 N", "0.1 s", quantity="force", unit="N")
+    ds = fm.history(fm.System(damping_ratios=0.1), record, beta=["1 N", "2 N"], units=units)
+    (ax,) = fm.plot_history(ds)
+    assert ax.get_xlabel() == "friction force [N]"
+    assert ax.get_ylabel() == "largest displacement [mm]"
+    np.testing.assert_allclose(ax.lines[-1].get_xdata(), [1.0, 2.0], rtol=1e-14)
+    np.testing.assert_allclose(ax.lines[-1].get_ydata(), 1e3 * ds.amplitude_m.values.ravel(), rtol=1e-14)
+    axes = fm.plot_history(ds.isel(beta=[0]))
+    assert axes[1].get_ylabel() == "displacement [mm]"
+
+
 def test_energies_add_up_to_the_work_of_the_load(suite):
     (ax,) = axes = fm.plot_energies(suite)
     (line,) = ax.lines

@@ -9,8 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from ...datasets.labels import SCALES
 from ...datasets.motion_labels import CELL, axes_of_motions, stuck_times
 from ...errors import InputError
+from ...units.table import UNITS, handy_unit
 from ..drawing import with_options
 from ..options import FigureOptions
 from ..palette import CLASSES, LINES, STUCK
@@ -130,6 +132,8 @@ def _draw_traces(axes: "AxesArray", ds: xr.Dataset) -> list[Handle]:
     time = ds["time"].values
     draw_record(axes[0], ds)
     x, length = values_in_si(ds, "x", "m", "m")
+    if length:
+        x, length = _handy(x, "length")
     handles = _draw_rows(axes[1], time, x, "mass")
     axes[1].set_ylabel(f"displacement{length}")
     force, newton = values_in_si(ds, "friction", "N", "N")
@@ -270,8 +274,12 @@ def plot_history(
 def _draw_peaks(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     """Draw the largest displacement of the last mass over friction: every record, and their median."""
     values, unit = values_in_si(ds, "amplitude", "m", "m")
+    if unit:
+        values, unit = _handy(values, "length")
     peaks = values[..., -1].reshape(-1, *values.shape[2:-1])  # records and scales, mu, beta
-    beta = ds["beta"].values
+    beta, of_friction = ds["beta"].values, ""
+    if (force := ds.attrs.get(SCALES["force"])) is not None:
+        beta, of_friction = _handy(beta * float(force), "force")
     handles: list[Handle] = []
     for k, mu in enumerate(ds["mu"].values):
         colour = LINES[k % len(LINES)]
@@ -279,10 +287,16 @@ def _draw_peaks(ax: Axes, ds: xr.Dataset) -> list[Handle]:
             ax.plot(beta, peaks[:, k].T, color=colour, **_FAINT)
         draw_band(ax, beta, peaks[:, k], colour)
         handles.append(Line2D([], [], color=colour, label=rf"$\mu = {mu:g}$"))
-    ax.set_xlabel(r"friction ratio $\beta$")
+    ax.set_xlabel(f"friction force{of_friction}" if of_friction else r"friction ratio $\beta$")
     ax.set_ylabel(f"largest displacement{unit}")
     ax.set_ylim(bottom=0.0)
     return handles
+
+
+def _handy(values: np.ndarray, measure: str) -> tuple[np.ndarray, str]:
+    """Values in SI units in the unit that is handy for the largest one, and this unit in brackets."""
+    unit = handy_unit(float(np.nanmax(np.abs(values), initial=0.0)) or 1.0, measure)
+    return values / float(UNITS[unit].size), f" [{unit}]"
 
 
 @with_options

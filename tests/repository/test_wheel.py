@@ -13,7 +13,7 @@ from conftest import ROOT
 
 import frictionmap as fm
 
-PACKED = ("frictionmap", "configs", "docs", "tests", "benchmarks")
+PACKED = ("frictionmap", "configs", "docs", "paper", "tests", "benchmarks")
 PAGES = (
     "pyproject.toml",
     "README.md",

@@ -3,9 +3,9 @@
 python -m benchmarks NAME|all [--quick] [--results FOLDER]
 
 NAME is accuracy, peers, scaling, startup, stress, steady, structures, general, continuation, laws, design,
-static, bound, large, explore, first_minute, coupling, coverage, consistency, spectrum, histories or banks:
-each is a module of that name in `measures`.  It prints tables, and writes JSON and perhaps a figure.  `all`
-states how long it will take, and continues after an interruption.
+static, bound, large, explore, first_minute, coupling, coverage, consistency, spectrum, histories, banks,
+many_contacts or second_starts: each is a module of that name in `measures`.  It prints tables, and writes
+JSON and perhaps a figure.  `all` states how long it will take, and continues after an interruption.
 `python -m benchmarks page` writes the numbers of the committed results into docs/results.md.
 
 =============================  ========================================================================
@@ -36,6 +36,8 @@ states how long it will take, and continues after an interruption.
   spectrum                     friction response spectra: a sample, an event, a whole spectrum
   histories                    motions in time under records: time against error, beside other solvers
   banks                        banks of elastic elements: time against their number, as one contact or not
+  many_contacts                time of a cell against the number of contacts, up to 64: frames and loops
+  second_starts                steady states of 9 to 64 contacts from two starts: are they the same?
 `peers/`                       other solvers: each for one mass and for chains of masses
   solve_ivp, heyoka, cvode     general-purpose ODE solvers; `heyoka_batch`: many cells at a time
   fixed_step                   time stepping: RK4 with sticking logic, Moreau-Jean

@@ -43,6 +43,8 @@ BENCHMARKS = {
     "spectrum": 25,
     "histories": 45,
     "banks": 30,
+    "many_contacts": 120,
+    "second_starts": 120,
 }
 
 

@@ -14,7 +14,7 @@ from conftest import ROOT
 #: Benchmarks that draw no figure: their tables show all they measure.
 WITHOUT_FIGURE = {
     "steady", "startup", "design", "static", "large", "explore", "first_minute", "coupling",
-    "spectrum", "banks",
+    "spectrum", "banks", "second_starts",
 }  # fmt: skip
 
 

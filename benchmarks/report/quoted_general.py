@@ -186,3 +186,30 @@ def consistency_lines(consistency: dict) -> list[str]:
         "",
         "![Largest multipliers](../benchmarks/results/consistency.png)",
     ]
+
+
+def _many_rows(many: dict) -> Iterator[tuple[str, ...]]:
+    """Time of a cell of every kind of system with the most and with fewer contacts, and how it grows."""
+    for kind, rows in many["cells"].items():
+        for start, words in (("rest", "from rest"), ("neighbour", "from its neighbour")):
+            key = f"seconds from {start}"
+            shown = [n for n in rows if n in ("1", "8", "16", "32", "64")] or list(rows)
+            times = ", ".join(f"{_seconds(rows[n], key)} (N = {n})" for n in shown)
+            yield f"{kind}, {words}", times, f"N^{many['slopes'][kind][key]['power']:.1f}"
+
+
+def many_contacts_lines(many: dict) -> list[str]:
+    """Lines of the section on the number of contacts."""
+    whole = sum(row["cells"] for rows in many["cells"].values() for row in rows.values())
+    unresolved = sum(row["unresolved"] for rows in many["cells"].values() for row in rows.values())
+    return [
+        "",
+        "### Number of contacts",
+        "",
+        "Frames have as many storeys, and rings as many unequal blades, as contacts. Friction is 0.3 times "
+        f"that with which no contact slips, and zeta is 0.05. {unresolved or 'None'} of {whole:,} "
+        "cells had no answer.",
+        *markdown(("system", "time per cell", "growth from N = 8"), list(_many_rows(many))),
+        "",
+        "![Time of a cell over the number of contacts](../benchmarks/results/many_contacts.png)",
+    ]

@@ -17,7 +17,7 @@ from .quoted_curves import continuation_lines, laws_lines
 from .quoted_design import design_lines
 from .quoted_errors import accuracy_lines, steady_lines, stress_lines
 from .quoted_first_minute import first_minute_lines
-from .quoted_general import consistency_lines, general_lines
+from .quoted_general import consistency_lines, general_lines, many_contacts_lines
 from .quoted_histories import histories_lines
 from .quoting import duration, markdown, rounded_off, two_digits
 
@@ -49,6 +49,9 @@ QUOTED = (
     "static",
     "banks",
 )
+
+#: Benchmarks that are quoted as soon as their results are there.
+QUOTED_LATER = ("many_contacts",)
 
 
 def _row(what: str, ours: float, theirs: float) -> tuple[str, ...]:
@@ -457,7 +460,7 @@ def block(results: Path) -> str:
     """Text of the page between the markers."""
     found = {
         name: json.loads((results / f"{name}.json").read_text(encoding="utf-8"))
-        for name in QUOTED
+        for name in (*QUOTED, *QUOTED_LATER)
         if (results / f"{name}.json").is_file()
     }
     peers, structures = found.get("peers"), found.get("structures")
@@ -470,6 +473,8 @@ def block(results: Path) -> str:
         lines += continuation_lines(found["continuation"])
     if "laws" in found:
         lines += laws_lines(found["laws"])
+    if "many_contacts" in found:
+        lines += many_contacts_lines(found["many_contacts"])
     if "consistency" in found:
         lines += consistency_lines(found["consistency"])
     if "design" in found:

@@ -5,6 +5,7 @@ import pytest
 from general_systems import frame
 
 import frictionmap as fm
+from benchmarks.measures import second_starts
 
 
 def ranges(system, r, beta, **further):
@@ -93,6 +94,14 @@ def test_second_starts_of_contacts_that_close_loops(count, grounds):
     ]
     assert found[0].max() > 0.01
     assert found[0] == pytest.approx(found[1], abs=1e-12 * found[0].max())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("k", range(6))
+def test_random_systems_end_alike_from_two_starts(k):
+    """Frames and rings of 9 to 12 contacts; the benchmark has 500 of up to 64."""
+    kind, ended, _ = second_starts.check(k, quick=True)
+    assert ended == "same", kind
 
 
 def test_at_most_64_contacts():

@@ -24,7 +24,7 @@ from benchmarks.report import quoting, record, results_page
 RESULTS = ROOT / "benchmarks" / "results"
 
 #: Benchmarks without timings.
-UNTIMED = {"stress", "steady", "coupling", "consistency"}
+UNTIMED = {"stress", "steady", "coupling", "consistency", "second_starts"}
 
 
 def test_what_is_no_number_is_saved_as_none(tmp_path):

@@ -39,11 +39,13 @@ _RING = 3
 def frame(count: int, stiffness: float | None) -> fm.System:
     """A frame with a damper in each storey, under a load at its top."""
     friction = np.random.default_rng(count).uniform(0.3, 1.0, count)
-    places = [("fixed-wall", 1), *(("between-masses", (j, j + 1)) for j in range(1, count))]
     contacts = [
-        fm.Contact(kind, masses, ratio=b, stiffness=stiffness)
-        for (kind, masses), b in zip(places, friction.tolist(), strict=True)
-    ]
+        fm.Contact(
+            "between-masses" if j else "fixed-wall", (j, j + 1) if j else 1, ratio=float(friction[j]),
+            stiffness=stiffness,
+        )
+        for j in range(count)
+    ]  # fmt: skip
     ones = [1.0] * count
     return fm.System(
         contacts=contacts, mass_ratios=ones, stiffness_ratios=ones, damping_ratios=0.05, load_mass=count

@@ -95,22 +95,22 @@ def check(k: int, quick: bool) -> tuple[str, str, float]:
 def run(quick: bool, results: Path) -> dict:
     """Check, print and save."""
     found = [check(k, quick) for k in range(SYSTEMS[quick])]
-    content = {}
+    kinds: dict[str, dict] = {}
     for kind in KINDS:
         own = [one for one in found if one[0] == kind]
         ended = Counter(how for _, how, _ in own)
-        content[kind] = {
+        kinds[kind] = {
             "systems": len(own),
             "ended": dict(ended),
             "largest difference": max((off for *_, off in own), default=0.0),
         }
     table(
         ("", "systems", "ended", "largest difference"),
-        [(kind, *content[kind].values()) for kind in KINDS],
+        [(kind, *kinds[kind].values()) for kind in KINDS],
     )
     content = {
         "seed": SEED,
-        "kinds": content,
+        "kinds": kinds,
         "not the same": [k for k, one in enumerate(found) if one[1] != "same"],
     }
     save("second_starts", content, results)

@@ -14,6 +14,9 @@ from .laws.kinds import has_force, holding_stiffness, is_spare, is_spring, keeps
 from .laws.speed import has_law, key_bits
 from .problem import INVERSE, LONG, TERMS
 
+#: Rows of a product that are computed side by side.
+_ROWS = 4
+
 
 @kernel
 def identity(problem, motion):
@@ -141,21 +144,30 @@ def _holding_columns(problem, row, motion, k, first):
     modes = problem.push.shape[0]
     columns, size = row.columns, motion.tangent.shape[1]
     count = motion.held[problem.spring.size]
-    for a in range(count):
-        j = motion.held[a]
-        for i in range(0, size, LANES):
+    for i in range(0, size, LANES):
+        for a in range(0, count - 1, 2):  # each part is a chain of sums: two side by side
+            j, other = motion.held[a], motion.held[a + 1]
+            part, beside = filled(0.0), filled(0.0)
+            for m in range(modes):
+                place = load(columns, first + ((k + 2) * modes + m) * size + i)
+                part = part + place * problem.chi[j, m]
+                beside = beside + place * problem.chi[other, m]
+            store(part, motion.forces, a * size + i)
+            store(beside, motion.forces, (a + 1) * size + i)
+        for a in range(count - count % 2, count):
             part = filled(0.0)
             for m in range(modes):
-                part = part + load(columns, first + ((k + 2) * modes + m) * size + i) * problem.chi[j, m]
+                place = load(columns, first + ((k + 2) * modes + m) * size + i)
+                part = part + place * problem.chi[motion.held[a], m]
             store(part, motion.forces, a * size + i)
     _solve_columns(motion.solve, count, motion.forces)
-    for a in range(count):
-        j = motion.held[a]
+    for i in range(0, size, LANES):
         for m in range(modes):
-            for i in range(0, size, LANES):
-                at = first + ((k + 2) * modes + m) * size + i
-                part = load(motion.forces, a * size + i) * row.reaction[j, m]
-                store(load(columns, at) - part, columns, at)
+            at = first + ((k + 2) * modes + m) * size + i
+            rest = load(columns, at)
+            for a in range(count):
+                rest = rest - load(motion.forces, a * size + i) * row.reaction[motion.held[a], m]
+            store(rest, columns, at)
 
 
 @inner_kernel
@@ -303,8 +315,21 @@ def _multiply(problem, table, at, motion):
     """Multiply the derivatives by those over a step, which are at this place of a table."""
     count, size = state_size(problem), motion.tangent.shape[1]
     product = count * size  # the second half of the scratch
+    whole = count - count % _ROWS
     for i in range(0, size, LANES):
-        for a in range(count):
+        for a in range(0, whole, _ROWS):  # each part is a chain of sums: several side by side
+            one, two, three, four = filled(0.0), filled(0.0), filled(0.0), filled(0.0)
+            for b in range(count):
+                column = load(motion.tangent, b * size + i)
+                one = one + column * table[at, a, b]
+                two = two + column * table[at, a + 1, b]
+                three = three + column * table[at, a + 2, b]
+                four = four + column * table[at, a + 3, b]
+            store(one, motion.onward, product + a * size + i)
+            store(two, motion.onward, product + (a + 1) * size + i)
+            store(three, motion.onward, product + (a + 2) * size + i)
+            store(four, motion.onward, product + (a + 3) * size + i)
+        for a in range(whole, count):
             part = filled(0.0)
             for b in range(count):
                 part = part + load(motion.tangent, b * size + i) * table[at, a, b]

@@ -87,7 +87,7 @@ MOTIONS = {
     "open": Label(np.int8, "whether the contact is open", (*CELL, "time"), OPENINGS),
     "piecewise_force": _real(f"force of a piecewise linear spring, {_F}", "spring", "time"),
     "drive": _real("the record: a force over P, or the acceleration of the base over omega_1^2 P/k1", "time"),
-    "stored_energy": _size(f"energy of masses and springs, also of the springs in contacts, {_E}", "time"),
+    "stored_energy": _real(f"energy of masses and springs, also of the springs in contacts, {_E}", "time"),
     "lost_friction": _real(f"lost in the contact since the beginning, {_E}", "time"),
     "lost_damping": _real(f"lost in the damping since the beginning, {_E}", "time"),
     "event_time": _real("time of the event, over 1/omega_1", "event", comment="padded with NaN"),

@@ -318,7 +318,7 @@ def _interpolation_bound(
     ds: xr.Dataset, system: System, records: tuple[Record, ...], units: Units | None
 ) -> dict[str, float]:
     """What the interpolation of the records can change in a displacement, where mu = 1 and it has a bound."""
-    if (ds["mu"].values != 1.0).any():
+    if (ds["mu"].values != 1.0).any() or system.contact_system.has_phases:
         return {}
     each = [interpolation_bounds(system, record, units=units)["amplitude"].max().item() for record in records]
     length = motion_scales(units, system).of("length") if "amplitude_m" in ds else None

@@ -205,7 +205,8 @@ class OpeningMotions(Motions):
         if self.phases.presses.any():
             rest = self._at_rest(one.opened)
             found |= {
-                "normal_force_max": rest + high[pressed], "normal_force_min": rest + low[pressed],
+                "normal_force_max": np.maximum(rest + high[pressed], 0.0),
+                "normal_force_min": np.maximum(rest + low[pressed], 0.0),  # without rounding errors
                 "separations": one.opened.separations,
                 "open_fraction": one.opened.time / one.end if one.end else 0.0 * rest,
             }  # fmt: skip
@@ -225,7 +226,7 @@ class OpeningMotions(Motions):
             opened = senses == LIFTED
             rate = self.phases.chi @ states[1 + modes : 1 + 2 * modes] - self.problem.belt[:, np.newaxis]
             found |= {
-                "normal_force": np.where(opened, 0.0, force), "open": opened,
+                "normal_force": np.where(opened, 0.0, np.maximum(force, 0.0)), "open": opened,
                 "direction": senses_of(senses, opened, rate),
             }  # fmt: skip
         if self.system.springs:

@@ -7,6 +7,7 @@ import pytest
 from opening_truth import Truth
 
 import frictionmap as fm
+from frictionmap.command_line.cli import main
 
 MATRICES = {"M": np.eye(2), "K": np.array([[1.0, 0.2], [0.2, 1.2]]), "C": np.diag([0.04, 0.06])}
 PUSH = [1.0, 0.5]
@@ -145,7 +146,7 @@ def test_cut_and_continued():
 
 
 def test_peaks_and_energies_over_time():
-    """Peaks are those of a record with 40 times the samples, but for what lies between them."""
+    """Peaks are those of a record with 40 times the samples, and what lies between these."""
     system, record = system_of(BOTH | {"kt": 3.0}, [GAP, PLAY]), noise(6)
     ds = fm.history(system, record, after=5.0)
     fine = fm.Record(
@@ -172,7 +173,7 @@ def test_peaks_and_energies_over_time():
     assert kept[-1] == pytest.approx(ds["energy"].item(), abs=1e-10)
 
 
-def test_asleep_is_for_good_and_at_the_place_of_rest():
+def test_asleep_is_permanent_and_at_the_place_of_rest():
     system, record = system_of(BOTH | {"kt": 3.0}, [GAP, PLAY]), noise(7)
     ds = fm.history(system, record)
     assert ds["status"].item() == 0
@@ -181,3 +182,37 @@ def test_asleep_is_for_good_and_at_the_place_of_rest():
     np.testing.assert_allclose(
         long["x"].squeeze().values[:, -1], ds["residual"].squeeze().values, rtol=0.0, atol=1e-9
     )
+
+
+def test_the_command_writes_what_it_reads(tmp_path, capsys):
+    text = """\
+[system]
+mass_ratios = [1.0, 1.0]
+stiffness_ratios = [1.0, 0.5]
+damping_ratios = 0.02
+contacts = [{ stiffness = 3.0, normal = { mass = 2, stiffness = 1.0, friction = 0.4, preload = 0.3 } }]
+springs = [{ masses = [1, 2], gap = 0.5, stiffness = 4.0 }]
+[record]
+pulse = { kind = "half-sine", amplitude = 1.0, duration = 4.0 }
+quantity = "force"
+mass = 2
+"""
+    (tmp_path / "pulse.toml").write_text(text)
+    assert main(["history", str(tmp_path / "pulse.toml"), "-o", str(tmp_path / "pulse.nc")]) == 0
+    ds = fm.open(tmp_path / "pulse.nc")
+    assert ds["separations"].item() == (ds["event_kind"] == 3).sum() > 0
+    assert ds["spring_crossings"].item() == (ds["event_kind"] == 5).sum() > 0
+    assert main(["info", str(tmp_path / "pulse.nc")]) == 0
+    assert main(["plot", str(tmp_path / "pulse.nc"), "-o", str(tmp_path / "pulse.png")]) == 0
+    assert (tmp_path / "pulse.png").stat().st_size > 10_000
+
+
+def test_what_is_refused_is_named():
+    quake = fm.Record([0.0, 1.0, 0.0], 0.1)
+    with pytest.raises(fm.InputError, match=r"contacts\[1\].normal with the ground.*masses = \[A, B\]"):
+        fm.history(system_of(BOTH), quake)
+    with pytest.raises(fm.InputError, match=r"springs\[1\] with the ground"):
+        fm.history(fm.System(springs=[GAP]), quake)
+    varying = fm.Contact(normal_record=fm.Record([0.0, 0.5, 0.0], 0.1, quantity="force"))
+    with pytest.raises(fm.InputError, match=r"contacts\[1\].normal_record"):
+        fm.history(fm.System(contacts=[varying], springs=[GAP]), fm.Record([0.0, 1.0], 0.1, quantity="force"))

@@ -8,7 +8,6 @@ from ..datasets.physical import with_units
 from ..datasets.variables import stamp
 from ..errors import InputError
 from ..model.system import System
-from ..no_load.sweep import belt_boundaries
 from ..solvers.choose import engine_of
 from ..units.axes import KINDS, ratios
 from ..units.scales import Units, scales_of
@@ -80,6 +79,8 @@ def boundaries(
     array([[0.25, 4.  ]])
     """
     if (speeds := belt_speeds(system, wall_speed, r)) is not None:
+        from ..no_load.sweep import belt_boundaries
+
         given = system_and_axes(system, None, beta, mu, units, needs=("beta",))
         return belt_boundaries(given.system, speeds, given.beta, given.mu, given.units)
     if beta is not None:

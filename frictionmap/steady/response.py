@@ -11,7 +11,6 @@ from ..datasets.variables import stamp
 from ..errors import InputError
 from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
-from ..no_load.response import belt_response, refuse_settings
 from ..solvers.choose import engine_of
 from ..units.axes import KINDS, ratios, require
 from ..units.scales import Scales, Units, scales_of
@@ -54,6 +53,8 @@ def _belt_motion(
     system: System, cell: tuple[Any, Any, Any], points: int, units: Units | None, settings: dict[str, Any]
 ) -> xr.Dataset:
     """One motion without a load in time."""
+    from ..no_load.response import belt_response, refuse_settings
+
     refuse_settings(settings)
     points = checks.whole(points, "points", least=2, most=_MOST_POINTS)
     return belt_response(system, *cell, points, units, settings.get("start"))

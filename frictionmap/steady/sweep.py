@@ -16,7 +16,6 @@ from ..jobs import Progress, Watch
 from ..model.settings import Solver, SolverSettings, merged
 from ..model.system import System
 from ..model.variations import Variations, checked_variations
-from ..no_load.sweep import belt_map
 from ..single.maps import checked_axes
 from ..solvers.choose import engine_of
 from ..units.dimensions import axes_in_ratios
@@ -101,6 +100,8 @@ def sweep(
     array([[[ 0.,  2., nan]]], dtype=float32)
     """
     if (speeds := belt_speeds(system, wall_speed, r)) is not None:
+        from ..no_load.sweep import belt_map
+
         _refuse_of_loads({"solver": solver, "axes": axes, **settings})
         given = system_and_axes(system, None, beta, mu, units, needs=("beta",))
         return belt_map(given.system, speeds, given.beta, given.mu, given.units, threads, progress)

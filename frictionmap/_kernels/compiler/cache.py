@@ -109,7 +109,10 @@ def _find(name: str, key: tuple) -> Any:
 
 def _to_store(result: CompileResult) -> _Stored:
     """Return what a kernel is rebuilt from."""
-    library, descriptor, environment, signature, _, _, annotation, _, environments = result._reduce()
+    unannotated = result._replace(
+        type_annotation=""
+    )  # numba would write a listing of types, which nobody reads
+    library, descriptor, environment, signature, _, _, annotation, _, environments = unannotated._reduce()
     calls = [(called.place, called.number) for called in result.library.calls]
     return _Stored(library, calls, descriptor, environment, signature, annotation, environments)
 

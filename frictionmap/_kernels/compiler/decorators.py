@@ -4,6 +4,8 @@ Functions that Python calls, and functions that make or return arrays, are entri
 and inner kernels if they are called in every scan step.  Python cannot call a kernel.
 
 kernel, inner_kernel : decorate a function that only kernels call
+late_kernel          : decorate a kernel that many runs never call, with the type of its result: None, bool,
+                       int, float, or a tuple or named tuple of these; it is compiled at its first call
 entry                : decorate a function that Python calls; with keep=False it is not kept on disk
 by_class             : replace a declaration by bodies, chosen by the class of the first argument
 """
@@ -51,5 +53,6 @@ def compiler_in_use() -> str:
 
 kernel = _chosen.kernel
 inner_kernel = _chosen.inner_kernel
+late_kernel = _chosen.late_kernel
 entry = _chosen.entry
 by_class = _chosen.by_class

@@ -17,10 +17,11 @@ from numba.core.registry import CPUDispatcher
 from . import plain
 from .cache import KernelCache
 from .class_dispatch import by_class
+from .late import Late
 from .linking import compiler
 from .mode import mode
 
-__all__ = ["by_class", "entry", "inner_kernel", "kernel"]
+__all__ = ["by_class", "entry", "inner_kernel", "kernel", "late_kernel"]
 
 #: Kernels never raise (`error_model="numpy"`), never re-order arithmetic (no fast-math), and release the
 #: interpreter lock, so that several threads can run them side by side.  Options left out here a kernel
@@ -99,6 +100,14 @@ class _Kernel(_Compiled):
         raise TypeError(f"{self.py_func.__name__} can be called by kernels only; Python calls an entry")
 
 
+class _LateKernel(_Kernel):
+    """A kernel that is compiled while others run."""
+
+    def compile(self, sig: Any) -> Any:
+        with _without_collector():
+            return super().compile(sig)
+
+
 class _Entry(_Compiled):
     """A function that Python calls; for kernels that call it, it is compiled once more as a kernel.
 
@@ -165,6 +174,11 @@ def kernel(function: Callable) -> Any:
 def inner_kernel(function: Callable) -> Any:
     """Decorate a kernel called so often that a call would cost more than the work (48 ns and 16 ns)."""
     return _kept(_compiled(_Kernel, function, {**_KERNEL_RULES, "forceinline": True}, inner=True))
+
+
+def late_kernel(returns: Any) -> Callable[[Callable], Any]:
+    """Decorate a kernel that is compiled when it is called first; see `decorators`."""
+    return lambda function: Late(_kept(_compiled(_LateKernel, function, _KERNEL_RULES, inner=False)), returns)
 
 
 def entry(function: Callable, *, keep: bool = True) -> Any:

@@ -36,6 +36,11 @@ def kernel(function: Callable) -> Callable:
 inner_kernel = kernel
 
 
+def late_kernel(returns: Any) -> Callable[[Callable], Callable]:
+    """Leave a kernel to be compiled with those that call it."""
+    return kernel
+
+
 def dispatcher(function: Callable) -> Any:
     """Compile a function under the rules of kernels, without keeping it."""
     return njit(**_RULES)(function)

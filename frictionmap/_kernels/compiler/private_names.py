@@ -27,7 +27,7 @@ NAMES = (
     Names(
         "numba.core.registry:CPUDispatcher",
         (
-            "get_call_template", "get_overload", "add_overload", "_compile_for_args", "_insert",
+            "get_call_template", "get_overload", "add_overload", "compile", "_compile_for_args", "_insert",
         ),
         "a kernel is compiled once for constant and variable arguments, has no wrapper for Python and "
         "returns no array; an entry is compiled by plain numba if the fast compiler fails",
@@ -39,6 +39,17 @@ NAMES = (
         "the class of an argument selects the body of a function",
     ),
     Names("numba.core.types", ("unliteral",), "constant arguments are typed like variables"),
+    Names("numba.core.types:BaseTuple", ("from_types",), "the result of a late kernel is declared"),
+    Names(
+        "numba.core.typing.templates",
+        ("make_concrete_template",),
+        "a call of a late kernel is typed without compiling it",
+    ),
+    Names(
+        "numba.core.cgutils",
+        ("add_global_variable", "get_or_insert_function", "if_unlikely", "is_null"),
+        "a call of a late kernel goes through an address",
+    ),
     Names(
         "numba.core.compiler:Compiler",
         ("compile_extra", "_compile_bytecode"),
@@ -56,7 +67,7 @@ NAMES = (
             "add_linking_library", "enable_object_caching", "serialize_using_object_code",
             "has_dynamic_globals", "codegen", "_ensure_finalized", "_finalize_dynamic_globals",
             "_finalize_final_module", "_finalized", "_get_compiled_object", "_optimize_final_module",
-            "_optimize_functions", "_set_compiled_object",
+            "_optimize_functions", "_set_compiled_object", "get_pointer_to_function",
         ),
         "a kernel is optimised once, then called by name or copied into its callers",
         ("_codegen", "_final_module"),
@@ -73,11 +84,15 @@ NAMES = (
         "the linker finds kernels that were loaded from disk",
         ("_defined_symbols",),
     ),
-    Names("llvmlite.binding", ("parse_bitcode",), "inner kernels are loaded from disk"),
+    Names(
+        "llvmlite.binding",
+        ("add_symbol", "parse_bitcode"),
+        "late kernels are asked for, inner kernels are loaded from disk",
+    ),
     Names("numba.core.compiler", ("compile_result",), "a compiled kernel is rebuilt from its file"),
     Names(
         "numba.core.compiler:CompileResult",
-        ("_reduce", "codegen", "lifted", "library"),
+        ("_reduce", "_replace", "codegen", "lifted", "library"),
         "a compiled kernel is written to its file",
     ),
     Names("numba.core.cpu:CPUContext", ("get_executable",), "a kernel loaded from disk gets its entry point"),

@@ -7,7 +7,7 @@ errors.
 import math
 from typing import NamedTuple
 
-from ..compiler import kernel
+from ..compiler import kernel, late_kernel
 from ..logs import CAPACITY, LENGTH, USED, Mean, is_stationary, mean_stops, mean_stuck, opened
 from ..long_periods import enough_cycles
 from .records import SHORTEST_STOP, TURN
@@ -41,7 +41,7 @@ def _slot_at(log, time):
     return opened(log, int(time / (TURN * log[CAPACITY, LENGTH])), _SUMS, 0.0)
 
 
-@kernel
+@late_kernel(None)
 def log_stop(log, time, wait):
     """Add the time of a stop that begins at `time`, to every slot its share."""
     end = time + wait
@@ -56,7 +56,7 @@ def log_stop(log, time, wait):
         slot = opened(log, slot + 1, _SUMS, 0.0)
 
 
-@kernel
+@late_kernel(None)
 def log_event(log, time, size, stopped, wait):
     """Add a slide that ended at `time` with displacement `size`, and the stop after it."""
     slot = _slot_at(log, time)

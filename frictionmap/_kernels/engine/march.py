@@ -19,7 +19,7 @@ from ...regimes import (
     TOO_MANY_EVENTS,
     UNRESOLVED,
 )
-from ..compiler import inner_kernel, kernel
+from ..compiler import inner_kernel, kernel, late_kernel
 from ..event_codes import GRAZING, NO_END, STUCK
 from ..logs import clear_log
 from ..long_periods import enough_cycles, first_search, next_search
@@ -44,6 +44,7 @@ from .motion import (
 from .policies import GOAL, NOW
 from .records import (
     TURN,
+    Cell,
     continuous_cell,
     irregular_cell,
     known_orbit,
@@ -246,14 +247,14 @@ def _orbit_cell(motion, contact, orbit, origin, time):
     return periodic_cell(measured, proven_stops(measured, contact), orbit, origin, time)
 
 
-@kernel
+@late_kernel(Cell)
 def _marched_cell(motion, contact, contact_state, event, history, lag):
     """Build the cell of the orbit that the motion has reached, which returns after `lag` slides."""
     orbit = known_orbit(contact_state, event, history.sign, lag)
     return _orbit_cell(motion, contact, orbit, INTEGRATED, history.time)
 
 
-@kernel
+@late_kernel(bool)
 def _approaches(motion, contact, contact_state, orbit, allowed):
     """Whether the motion, its state saved in NOW, approaches an orbit, whose state is saved in GOAL.
 
@@ -323,7 +324,7 @@ def _is_marginal(motion, contact):
     return lasting_vibration(motion) or (motion.marginal and contact.b < contact.b_lim)
 
 
-@kernel
+@late_kernel(Cell)
 def _long_search(motion, contact, contact_state, event, history, schedule, limits):
     """Find the orbit of a long period that the motion is on, or recognise that it is irregular.
 
@@ -348,7 +349,7 @@ def _long_search(motion, contact, contact_state, event, history, schedule, limit
     return unresolved(NOT_REACHED, history.time)
 
 
-@kernel
+@late_kernel(Cell)
 def _unfinished(motion, contact, time, end):
     """Build the cell of a motion followed up to `time` in vain; `end`: the time allowed, both in tau."""
     if _is_marginal(motion, contact):

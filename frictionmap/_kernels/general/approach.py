@@ -5,7 +5,7 @@ For mu > 1 several steady states may attract, and a motion may pass one by for s
 
 import math
 
-from ..compiler import kernel
+from ..compiler import kernel, late_kernel
 from .counts import SLIPS, STOPS, TURNS
 from .creep import find_rest, restore_friction
 from .follow import FOLLOWED
@@ -108,7 +108,7 @@ def _approaches(problem, friction, halves, contraction, workspace):
     return approaches, cycles
 
 
-@kernel
+@late_kernel(Steady)
 def try_return(problem, friction, halves, tolerance, workspace):
     """Find the steady state that the motion goes to, from a return after some half periods.
 

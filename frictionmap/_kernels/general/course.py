@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import entry, kernel
+from ..compiler import entry, kernel, late_kernel
 from ..logs import CAPACITY, LENGTH, USED, clear_log, is_stationary, make_log, mean_stops, mean_stuck, opened
 from .counts import (
     COUNT_ROWS,
@@ -112,7 +112,7 @@ def _raise(log, slot, column, value):
     log[slot, column] = max(log[slot, column], value)
 
 
-@kernel
+@late_kernel(int)
 def follow_cycle(problem, friction, followed, workspace):
     """Follow the motion from `memory.start` for a period of the load, and log it.
 

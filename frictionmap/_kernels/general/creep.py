@@ -6,7 +6,7 @@ contact rests in the steady state, which the force that holds it decides (theory
 ways.
 """
 
-from ..compiler import kernel
+from ..compiler import kernel, late_kernel
 from .counts import MOVED, STUCK
 from .follow import FOLLOWED
 from .laws.kinds import has_force
@@ -213,7 +213,7 @@ def _settle(problem, friction, halves, tolerance, workspace):
     return NO_REPEAT, cycles
 
 
-@kernel
+@late_kernel((int, float))
 def find_rest(problem, friction, halves, tolerance, workspace):
     """Find the steady state by Newton's method, and the contacts that rest in it; see `_settle`.
 
@@ -233,7 +233,7 @@ def find_rest(problem, friction, halves, tolerance, workspace):
     return status, cycles
 
 
-@kernel
+@late_kernel((int, float))
 def find_held(problem, friction, halves, tolerance, workspace):
     """Find the steady state from the one of the structure that is held where it creeps; see `find_rest`.
 
@@ -264,7 +264,7 @@ def find_held(problem, friction, halves, tolerance, workspace):
     return NO_REPEAT, cycles
 
 
-@kernel
+@late_kernel((int, float))
 def find_crept(problem, friction, tolerance, workspace):
     """Find the steady state of a motion in which contacts slide in one direction, with these held; see
     `find_rest`.

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...regimes import COINCIDENCE, INSIDE, TURN
-from ..compiler import kernel
+from ..compiler import kernel, late_kernel
 from .events import CONTACT, LENGTH, STOPS_LISTED
 from .neighbours import (
     AT_END,
@@ -251,7 +251,7 @@ def _change_between(problem, i, search, m, found, walk, a, b):
         open_interval(found, i, m, walk.motions.beta[INSIDE_END], walk)
 
 
-@kernel
+@late_kernel(None)
 def change_at_larger_static_friction(problem, i, search, found, walk, a, b):
     """Begin or end intervals of larger static friction between the motions a and b, which both have no stops.
 

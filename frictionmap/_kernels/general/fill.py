@@ -21,7 +21,7 @@ from ...regimes import (
     STICK_SLIP,
     TOO_MANY_EVENTS,
 )
-from ..compiler import entry, kernel
+from ..compiler import entry, kernel, late_kernel
 from ..compiler.packed import packed
 from ..extrapolation import CELLS, reaches, weight
 from .counts import (
@@ -254,7 +254,7 @@ def _stays(problem, grid, m, i, b, friction, workspace, place):
     return stays
 
 
-@kernel
+@late_kernel(int)
 def _place_stuck(problem, grid, m, i, b, friction, workspace, place, out):
     """Store the displacements at the places to which the start leads in a cell that sticks permanently.
 

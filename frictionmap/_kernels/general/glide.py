@@ -9,7 +9,7 @@ of these parts; others are followed by their series.
 
 import math
 
-from ..compiler import inner_kernel, kernel
+from ..compiler import inner_kernel, kernel, late_kernel
 from ..compiler.packed import packed
 from ..compiler.vectors import LANES, filled, least, load, mask_above, most, store
 from .crossings import fill_controls
@@ -229,7 +229,7 @@ def _visits_before(problem):
     return state_size(problem) + contacts if contacts > _FEW else 0
 
 
-@kernel
+@late_kernel(bool)
 def glide(problem, row, friction, interval, motion):
     """Move the state to the end of an interval, if nothing watched can reach its limit there.
 

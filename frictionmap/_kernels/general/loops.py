@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from ..compiler import kernel
+from ..compiler import kernel, late_kernel
 from .crossings import slope_at
 from .laws.coulomb import TOGETHER
 from .laws.kinds import has_constraint
@@ -246,7 +246,7 @@ def _is_still(problem, row, motion, j):
     return abs(slide_velocity(problem, row, motion, j)) <= TOGETHER * math.sqrt(own * whole)
 
 
-@kernel
+@late_kernel(bool)
 def _settle_loops(problem, row, friction, tau, motion, box, forces, arrived):
     """`settle` for contacts that may close loops.
 
@@ -297,7 +297,7 @@ def settle_contacts(problem, row, friction, tau, motion, box, forces, arrived, r
     return settle(problem, row, friction, tau, motion, box, arrived, released)
 
 
-@kernel
+@late_kernel(bool)
 def release_in_loops(problem, row, friction, motion, forces, x, box):
     """Decide by rates what follows where a force reaches its limit, and none jumps.
 

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from ..compiler import kernel
+from ..compiler import kernel, late_kernel
 from ..spectral_radius import spectral_radius
 from ..structure.newton import solve_linear
 from .counts import MOVED
@@ -93,7 +93,7 @@ def largest_multiplier(problem, row, halves, precision, motion, memory):
     return spectral_radius(memory.matrix, size, motion.tangent, precision)
 
 
-@kernel
+@late_kernel(float)
 def improve_by_part(problem, row, friction, motion, memory, record):
     """Take one Newton step on the map over a part of half a period, see `parts`; its size, the error of the
     state before it, over the size of the motion.

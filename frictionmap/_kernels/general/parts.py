@@ -4,7 +4,7 @@ A part later every sector is where another one was.  The return map is then that
 turned to the sectors that follow from it, q(tau) = T q(tau + pi/parts).  Its fixed point is the steady state.
 """
 
-from ..compiler import kernel
+from ..compiler import kernel, late_kernel
 from .counts import MOVED
 from .follow import FOLLOWED, follow
 from .laws.kinds import state_size
@@ -79,7 +79,7 @@ def _move_alike(problem, counts):
             counts[MOVED, j] = max(counts[MOVED, j], counts[MOVED, problem.turn.contacts[j]])
 
 
-@kernel
+@late_kernel(int)
 def go_part(problem, row, friction, motion, memory, record, derive):
     """`go_round` over a part of half a period; its derivatives get the sign of half a period.
 

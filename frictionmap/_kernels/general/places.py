@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import entry, kernel
+from ..compiler import entry, kernel, late_kernel
 from ..structure.newton import solve_linear
 from .counts import MOVED
 from .creep import WITHOUT_LIMIT, keep_friction, restore_friction
@@ -249,7 +249,7 @@ def _fill_gains(problem, row, friction, motion, places):
     return True
 
 
-@kernel
+@late_kernel(bool)
 def keep_orbit(problem, friction, halves, workspace):
     """Keep the steady state in `memory.start`, with the forces in its contacts at rest; False if that fails.
 
@@ -433,7 +433,7 @@ def _unload(problem, friction, places):
             return
 
 
-@kernel
+@late_kernel((bool, float))
 def follow_to_rest(problem, friction, halves, cycles, safety, workspace):
     """Follow the motion from `memory.start` until the places of the contacts at rest are known.
 
@@ -494,7 +494,7 @@ def _move_to_zero(problem, row, motion, memory, places):
         _move(problem, memory, places)
 
 
-@kernel
+@late_kernel((bool, float))
 def keep_orbit_anew(problem, friction, halves, tolerance, bits, workspace):
     """Keep a steady state as `keep_orbit` does, with bits that do not depend on how it was found.
 
@@ -527,7 +527,7 @@ def keep_orbit_anew(problem, friction, halves, tolerance, bits, workspace):
     return kept, cycles + 0.5 * halves
 
 
-@kernel
+@late_kernel((bool, float))
 def settle_places(problem, friction, halves, cycles, workspace):
     """Find the steady state with the places that the motion from `memory.start` leads to.
 
@@ -568,7 +568,7 @@ def _hold_all(friction, memory, places):
         friction.kinetic[j] = friction.static[j] = WITHOUT_LIMIT
 
 
-@kernel
+@late_kernel(bool)
 def keep_held(problem, friction, tolerance, workspace):
     """Keep the steady state in which all contacts rest at the place 0; False if none was found."""
     row, motion, memory = workspace.row, workspace.motion, workspace.memory
@@ -584,7 +584,7 @@ def keep_held(problem, friction, tolerance, workspace):
     return status == REPEATS and keep_orbit(problem, friction, 2, workspace)
 
 
-@kernel
+@late_kernel(None)
 def fill_needs(problem, friction, state, workspace):
     """Fill the static friction of each contact with which none ever slips; inf if one moves at the start, or
     where the normal load varies.
@@ -619,7 +619,7 @@ def _shift_by(problem, record, places, shift):
         shift[i] += pushed_by(problem, record, places.change, i)
 
 
-@kernel
+@late_kernel(bool)
 def place_at_start(problem, friction, state, workspace, shift):
     """Fill the displacements of contacts and masses that all rest at the places where they begin.
 
@@ -647,7 +647,7 @@ def place_at_start(problem, friction, state, workspace, shift):
     return True
 
 
-@kernel
+@late_kernel(bool)
 def place_after_start(problem, friction, state, cycles, workspace, shift):
     """Fill the displacements of contacts and masses that all rest, at the places to which the start leads.
 

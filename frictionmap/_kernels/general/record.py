@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import entry, inner_kernel, kernel
+from ..compiler import entry, inner_kernel, kernel, late_kernel
 from ..compiler.vectors import LANES, filled, load, magnitude, store, total
 from .crossings import first_zero, next_turn, value_at
 from .events import MOST, Events, list_step, make_events
@@ -249,7 +249,7 @@ def _kept_in_spring(problem, series, force, end, j):
     return mean * _taken_by_spring(problem, series, force, end, j)
 
 
-@kernel
+@late_kernel(None)
 def keep_works(problem, row, motion, end, record, first):
     """Add the sliding distances and works of the present step."""
     contacts = problem.spring.size

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import entry, kernel
+from ..compiler import entry, kernel, late_kernel
 from .counts import FIRST_SENSE, LAST_SENSE, MOVED, REVERSALS
 from .follow import FOLLOWED, follow, follow_to_section
 from .laws.coupled import is_coupled, solve_springs
@@ -346,7 +346,7 @@ def _leave_out(memory, at, rows):
                 memory.tied[at, j] -= part * memory.tied[m, j]
 
 
-@kernel
+@late_kernel(None)
 def _keep_free_places(problem, row, motion, memory, matrix, weight):
     """Add weight U L to the equations as `keep_places` does, where rigid-body modes move contacts at rest.
 
@@ -383,7 +383,7 @@ def _keep_free_places(problem, row, motion, memory, matrix, weight):
                 matrix[2 * modes + j, b] -= weight * holding_stiffness(problem, j) * rest
 
 
-@kernel
+@late_kernel(None)
 def _keep_coupled_places(problem, motion, memory, matrix, weight):
     """Add weight U L as `keep_places` does, of coupled contacts.
 

@@ -8,7 +8,7 @@ pattern that keeps changing, a slide that hardly begins, no convergence), the ge
 
 import math
 
-from ..compiler import inner_kernel, kernel
+from ..compiler import inner_kernel, kernel, late_kernel
 from ..compiler.vectors import LANES, LEADING, filled, least, load, mask_above, most, store
 from .counts import COUNT_ROWS, MOVED, NEAREST_STOP, STOPS, STUCK, TURNS
 from .crossings import NONE, approach, slope_at, value_at
@@ -391,7 +391,7 @@ def _keep_motion(problem, base, beta, start, sense, single, memory, record):
         mirror(record)
 
 
-@kernel
+@late_kernel((bool, float, float))
 def solve_single(problem, row, single, beta, memory, record):
     """Find and measure the steady state for mu = 1, from the state in `memory.start`.
 

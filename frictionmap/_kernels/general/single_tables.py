@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import entry, inner_kernel, kernel
+from ..compiler import entry, inner_kernel, kernel, late_kernel
 from ..compiler.vectors import LANES, filled, load, store
 from .crossings import fill_controls, value_at
 from .laws.kinds import RIGID, kind_of
@@ -204,7 +204,7 @@ def fits_row(problem, row, single, base):
     return single.fits[0] == 1
 
 
-@kernel
+@late_kernel(None)
 def _fill(problem, row, single, intervals):
     """Fill the tables of a row, of some intervals."""
     chi = problem.chi[0, 0]

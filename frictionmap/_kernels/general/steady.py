@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiler import entry, kernel
+from ..compiler import entry, kernel, late_kernel
 from ..compiler.packed import packed
 from ..long_periods import WINDOW, enough_cycles, first_search, next_search
 from .approach import STABLE, STABLE_PRECISION, try_return
@@ -129,7 +129,7 @@ def _go_on(problem, friction, halves, workspace):
     return code
 
 
-@kernel
+@late_kernel(Steady)
 def _find_unique(problem, friction, cycles, tolerance, workspace):
     """Find the steady state where every motion reaches it; see `find`."""
     memory, ring, base = workspace.memory, workspace.ring, unique_halves(problem)
@@ -157,7 +157,7 @@ def _find_unique(problem, friction, cycles, tolerance, workspace):
     return Steady(NO_REPEAT, 0, spent)
 
 
-@kernel
+@late_kernel(int)
 def _averages(followed, at_last, memory, record, course):
     """Take the averages of a motion as its result, if it stops, and they are stationary or it is the last
     occasion; return the half periods that they are of, else 0.
@@ -170,7 +170,7 @@ def _averages(followed, at_last, memory, record, course):
     return 0
 
 
-@kernel
+@late_kernel((int, float))
 def _creep_to_rest(problem, friction, tolerance, workspace):
     """Find the steady state that a motion goes to, ever more slowly, in which some contacts creep.
 
@@ -202,7 +202,7 @@ def _creep_to_rest(problem, friction, tolerance, workspace):
     return NO_REPEAT, cycles
 
 
-@kernel
+@late_kernel(Steady)
 def _find_from_start(problem, friction, cycles, tolerance, workspace):
     """Find the steady state where it depends on the start; see `find`.
 
@@ -382,7 +382,7 @@ def is_unique(problem, friction):
     return unique
 
 
-@kernel
+@late_kernel(float)
 def _find_anew(problem, friction, halves, tolerance, workspace):
     """Find a steady state anew from its rounded state; the periods followed.
 
@@ -409,7 +409,7 @@ def _find_anew(problem, friction, halves, tolerance, workspace):
     return spent
 
 
-@kernel
+@late_kernel(Steady)
 def _settle(problem, friction, state, found, cycles, tolerance, workspace):
     """Give the contacts at rest the places to which the motion leads from its start.
 

@@ -6,7 +6,7 @@ the watched quantity, and for so long the motion follows its equation of after t
 before it.
 """
 
-from ..compiler import inner_kernel, kernel
+from ..compiler import inner_kernel, kernel, late_kernel
 from ..compiler.vectors import LANES, filled, load, store
 from .keys import begin_key, find_key, put_digit
 from .laws.coupled import is_coupled
@@ -390,7 +390,7 @@ def through_event(problem, row, motion, drop, watched, slope):
                 motion.tangent[2 * modes + j, i] = 0.0
 
 
-@kernel
+@late_kernel(None)
 def through_slip(problem, motion, jumps, watched, slope):
     """Carry the derivatives through the begin of a slip, at which the rates of coupled forces jump.
 

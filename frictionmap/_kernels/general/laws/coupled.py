@@ -10,7 +10,7 @@ Where a contact begins to slip the rates of the other forces jump, and those of 
 its limit slips on, or its force falls.  That is unique, because F is positive definite.
 """
 
-from ...compiler import inner_kernel, kernel
+from ...compiler import inner_kernel, kernel, late_kernel
 from ...compiler.vectors import LANES, load, store
 from ..cholesky import factor, solve_factored
 from ..crossings import slope_at
@@ -38,7 +38,7 @@ def is_coupled(problem):
     return problem.coupling.flexibility.shape[0] > 0
 
 
-@kernel
+@late_kernel(bool)
 def factor_springs(problem, motion):
     """List the contacts that act as springs, and factor their flexibility."""
     contacts = motion.sense.size
@@ -184,7 +184,7 @@ def _begin_phases(problem, friction, motion, x, contact, box):
             motion.fresh[j] = max(0, side * motion.fresh[j] - 1)  # the force's zeros less one of y'
 
 
-@kernel
+@late_kernel(bool)
 def begin_slip(problem, friction, motion, x, contact, side, box, jumps):
     """Begin the slip of a contact whose force is at its limit, and what that changes in other contacts there.
 

@@ -9,7 +9,7 @@ begins to slide, is in segment 0.
 
 import math
 
-from ...compiler import inner_kernel, kernel
+from ...compiler import inner_kernel, kernel, late_kernel
 from ...compiler.vectors import LANES, load, store, total
 from ..counts import COUNT_ROWS, CROSSINGS
 from ..crossings import first_zero
@@ -127,7 +127,7 @@ def constant_factor(problem, motion, j):
     return problem.law.constant[j, motion.segment[j]] if has_law(problem) else 1.0
 
 
-@kernel
+@late_kernel(bool)
 def set_law_damping(problem, row, friction, motion):
     """Fill the derivatives of friction forces by velocities; whether one is not zero."""
     found = False

@@ -121,13 +121,14 @@ def sizes(scene: Scene, view: View, quantity: CellQuantity, piece: Piece) -> dic
 
     axes = sum(1 + (scales.of(measure) is not None) for measure in ("frequency", "force"))
     several = (contacts - 1) * len(outputs)
-    numbers = axes + len(("mu",)) + (masses > 1) + several + sum(map(copies, (*outputs, *BOUNDARIES)))
+    # a table has a column for each mass, and no ratio where there is a value in SI units
+    numbers = axes + len(("mu",)) + masses - 1 + several + len((*outputs, *BOUNDARIES))
     floats = sum(
         copies(name) * (masses if name == "amplitude" else contacts) for name in outputs if name not in _CODES
     )
     cells = piece.columns * piece.rows
     return {
-        "csv": _PER_NUMBER * numbers * masses * cells,
+        "csv": _PER_NUMBER * numbers * cells,
         "nc": _PER_FILE + _PER_FLOAT * floats * cells,
     }
 

@@ -43,7 +43,7 @@ BENCHMARKS = {
     "spectrum": 25,
     "histories": 45,
     "banks": 30,
-    "many_contacts": 120,
+    "many_contacts": 130,
     "second_starts": 120,
 }
 

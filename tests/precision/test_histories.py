@@ -224,6 +224,26 @@ def test_a_base_that_moves_is_the_force_in_absolute_coordinates():
     assert base.stops.item() == absolute.stops.item()
 
 
+@pytest.mark.parametrize("springs", [{}, {"springs": [{"masses": [1, 2], "gap": 1e3, "stiffness": 1.0}]}])
+@pytest.mark.parametrize(("mu", "stiffness"), [(1.2, None), (1.0, None), (1.0, 2.0)])
+def test_a_wall_is_left_behind_by_a_base_that_keeps_its_velocity(mu, stiffness, springs):
+    """After the record as under one that goes on with zeros; the wall moves relative to the base."""
+    own = {} if stiffness is None else {"stiffness": stiffness}
+    system = fm.System(
+        mass_ratios=[1.0] * 3, stiffness_ratios=[1.0] * 3, damping_ratios=0.05, excitation="base",
+        contacts=[fm.Contact("fixed-wall", 3, **own)], **springs,
+    )  # fmt: skip
+    values = np.append(np.random.default_rng(5).normal(size=12), np.zeros(101))
+    options = {"beta": 0.1, "mu": mu}
+    short = fm.history(system, fm.Record(values[:13], 0.7, quantity="acceleration"), after=70.0, **options)
+    long = fm.history(system, fm.Record(values, 0.7, quantity="acceleration"), after=0, **options)
+    assert short.friction_amplitude.item() <= mu * 0.1 * (1.0 + 1e-12)
+    assert short.events.item() == long.events.item() > 5
+    for name in ("friction_max", "friction_min", "z_max", "z_min", "work_friction", "sliding_distance"):
+        assert short[name].item() == pytest.approx(long[name].item(), rel=1e-10), name
+    np.testing.assert_allclose(short.x.values[..., -1], long.x.values[..., -1], rtol=0.0, atol=1e-10)
+
+
 def test_the_least_median_of_a_suite(reference_table):
     """Three local minima, the least one on a kink where two records are equal."""
     wanted = reference_table("history.json")["design"]

@@ -179,6 +179,30 @@ def shift_piece(series, at, x, terms):
 
 
 @kernel
+def put_part(into, pieces, begin, parts):
+    """Put the polynomials of one of the equal parts of an interval of a record in rows.
+
+    Parameters
+    ----------
+    into : (D, ...) coefficients of powers of the place in the part
+    pieces : (D, terms) those over the whole interval
+    begin : where the part begins, in lengths of the interval; beyond 1 after the record, because walls whose
+        velocity is not zero at its end go on
+    parts : number of parts of the interval
+    """
+    share, terms = 1.0 / parts, pieces.shape[1]
+    for d in range(pieces.shape[0]):
+        for k in range(terms):
+            into[d, k] = pieces[d, k]
+        if begin != 0.0:
+            shift_piece(into, d, begin, terms)
+        scale = 1.0
+        for k in range(terms):
+            into[d, k] *= scale
+            scale *= share
+
+
+@kernel
 def _shift_pieces(row, x, series, first, channels):
     """Fill the series of channels that are polynomials over the interval, kept in `row.loads`, from x on."""
     for d in range(channels):

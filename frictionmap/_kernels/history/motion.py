@@ -33,7 +33,7 @@ from ..general.problem import (
     velocity_row,
 )
 from ..general.record import clear_record
-from ..general.row import make_motion, make_row, set_channels, set_interval, shift_piece
+from ..general.row import make_motion, make_row, put_part, set_channels, set_interval
 from ..general.series import advance, expand, factor_held
 from .asleep import is_asleep
 from .held import Places, keep_places, make_places, note_places
@@ -223,23 +223,6 @@ def _cross(problem, friction, memory, ties, kept, jumped, listed):
 
 
 @kernel
-def _put_pieces(row, pieces, part, parts):
-    """Put the polynomials of one of the equal parts of an interval in the row.
-
-    pieces : (D, terms), over the whole interval
-    """
-    begin, share, terms = part / parts, 1.0 / parts, pieces.shape[1]
-    for d in range(pieces.shape[0]):
-        for k in range(terms):
-            row.loads[d, k] = pieces[d, k]
-        shift_piece(row.loads, d, begin, terms)
-        scale = 1.0
-        for k in range(terms):
-            row.loads[d, k] *= scale
-            scale *= share
-
-
-@kernel
 def _set_length(problem, memory, h):
     """Change the length of intervals, with the velocities that are measured in it."""
     row, motion = memory.row, memory.motion
@@ -313,7 +296,7 @@ def _begin(problem, friction, memory, course, start, senses):
     parts = _parts_of(problem, friction, course.steps[0])
     set_interval(problem, 0, row, course.steps[0] / parts)
     set_tables(memory.tables, row.numbers[H])
-    _put_pieces(row, course.pieces[0], 0, parts)
+    put_part(row.loads, course.pieces[0], 0.0, parts)
     for m in range(problem.squares.size):
         motion.state[Q, m] = start[Q, m]
         motion.state[P, m] = start[P, m] * row.numbers[H]
@@ -341,28 +324,29 @@ def _parts_of(problem, friction, step):
 
 
 @kernel
-def _follow_interval(problem, friction, memory, course, kept, k, jump, listed):
-    """Follow the motion through interval k.
+def _follow_interval(problem, friction, memory, course, kept, done, listed):
+    """Follow the motion through the next interval.
 
     Parameters
     ----------
     problem, friction, memory, course, kept : see `follow_record`
-    k : interval
-    jump : whether the load jumps where it begins
+    done : intervals followed before
     listed : whether the states at events are kept
 
     Returns
     -------
     int : RESOLVED, TOO_MANY_EVENTS or UNDETERMINED
     """
+    k = min(done, course.steps.size - 1)
+    jump = course.jumps[k] and done == k and done > 0
     step = course.steps[k]
     parts = _parts_of(problem, friction, step)
     _set_length(problem, memory, step / parts)
     tables = memory.tables
-    begin = kept.clock[0]
+    begin = kept.clock[0] = course.times[k] + (done - k) * step
     for part in range(parts):
         kept.clock[0] = begin + step * (part / parts)
-        _put_pieces(memory.row, course.pieces[k], part, parts)
+        put_part(memory.row.loads, course.pieces[k], done - k + part / parts, parts)
         jumped = jump and part == 0
         row, motion, counts = memory.row, memory.motion, memory.counts
         changed = jumped
@@ -420,9 +404,7 @@ def _follow(problem, friction, memory, course, kept, bed, limits):
             return RESOLVED, done, asleep
         if done >= last + limits[AFTER]:
             return (RINGING if to_rest else RESOLVED), done, asleep
-        kept.clock[0] = course.times[k] + (done - k) * course.steps[k]
-        jump = course.jumps[k] and done == k and done > 0
-        code = _follow_interval(problem, friction, memory, course, kept, k, jump, limits[LISTED] != 0)
+        code = _follow_interval(problem, friction, memory, course, kept, done, limits[LISTED] != 0)
         if code != RESOLVED:
             return code, done, asleep
         done += 1

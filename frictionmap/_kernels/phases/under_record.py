@@ -7,7 +7,7 @@ from ..compiler.packed import packed
 from ..general.crossings import NONE, first_zero, slope_at, value_at
 from ..general.problem import TERMS, TURN
 from ..general.record import clear_record
-from ..general.row import shift_piece
+from ..general.row import put_part
 from ..history.kept import BEGIN, END
 from ..history.motion import (
     AFTER,
@@ -216,24 +216,6 @@ def _cross(problem, cell, memory, kept, jumped, listed):
 
 
 @kernel
-def _put_part(memory, pieces, part, parts):
-    """Put the polynomials of one of the equal parts of an interval in the channels.
-
-    pieces : (D, terms), over the whole interval
-    """
-    begin, share, terms = part / parts, 1.0 / parts, pieces.shape[1]
-    for d in range(pieces.shape[0]):
-        for k in range(terms):
-            memory.channels[d, k] = pieces[d, k]
-        if begin != 0.0:
-            shift_piece(memory.channels, d, begin, terms)
-        scale = 1.0
-        for k in range(terms):
-            memory.channels[d, k] *= scale
-            scale *= share
-
-
-@kernel
 def _set_length(problem, memory, length):
     """Change the length of parts, with what is measured in it."""
     before, row, motion = memory.length[0], memory.row, memory.motion
@@ -280,21 +262,23 @@ def _jump(problem, cell, memory, kept):
 
 
 @kernel
-def _follow_interval(problem, cell, memory, course, kept, k, jump, listed):
-    """Follow the motion through one interval; a code of `_cross`.
+def _follow_interval(problem, cell, memory, course, kept, done, listed):
+    """Follow the motion through the next interval; a code of `_cross`.
 
     Parameters
     ----------
     problem, cell, memory, course, kept : see `follow_record`
-    k : interval
-    jump : whether the load jumps where it begins
+    done : intervals followed before
     listed : whether the states at events are kept
     """
-    begin, parts = kept.clock[0], _parts_of(memory, course.steps[k])
-    _set_length(problem, memory, course.steps[k] / parts)
+    k = min(done, course.steps.size - 1)
+    jump = course.jumps[k] and done == k and done > 0
+    step = course.steps[k]
+    begin, parts = course.times[k] + (done - k) * step, _parts_of(memory, step)
+    _set_length(problem, memory, step / parts)
     for part in range(parts):
-        kept.clock[0] = begin + course.steps[k] * (part / parts)
-        _put_part(memory, course.pieces[k], part, parts)
+        kept.clock[0] = begin + step * (part / parts)
+        put_part(memory.channels, course.pieces[k], done - k + part / parts, parts)
         jumped = jump and part == 0
         if jumped and not _jump(problem, cell, memory, kept):
             return UNDETERMINED
@@ -341,7 +325,7 @@ def _begin(problem, cell, memory, course, start, senses, kept):
     motion, row = memory.motion, memory.row
     parts = _parts_of(memory, course.steps[0])
     _set_length(problem, memory, course.steps[0] / parts)
-    _put_part(memory, course.pieces[0], 0, parts)
+    put_part(memory.channels, course.pieces[0], 0.0, parts)
     kept.clock[0] = course.times[0]
     for i in range(problem.squares.size):
         motion.q[i], motion.p[i] = start[0, i], start[1, i] * memory.length[0]
@@ -397,9 +381,7 @@ def _follow(problem, cell, memory, course, kept, bed, limits, state):
             return RESOLVED
         if done >= last + limits[AFTER]:
             return RINGING if to_rest else RESOLVED
-        kept.clock[0] = course.times[k] + (done - k) * course.steps[k]
-        jump = course.jumps[k] and done == k and done > 0
-        code = _follow_interval(problem, cell, memory, course, kept, k, jump, limits[LISTED] != 0)
+        code = _follow_interval(problem, cell, memory, course, kept, done, limits[LISTED] != 0)
         if code != RESOLVED:
             return code
         state[DONE] = done + 1

@@ -318,8 +318,13 @@ def _counts(ds: xr.Dataset) -> str:
     if not any(number != "0" for number, _ in found):
         return ""
     if len({word for _, word in found}) == 1:
-        return f", {' and '.join(number for number, _ in found)} {found[0][1]} per cycle"
-    return f", {' and '.join(f'{number} {word}' for number, word in found)} per cycle"
+        return f", {_counted([number for number, _ in found], found[0][1])} per cycle"
+    return f", {' and '.join(_counted([number], word) for number, word in found)} per cycle"
+
+
+def _counted(numbers: list[str], word: str) -> str:
+    """The numbers and what they count, which is one if the only number is 1."""
+    return f"{' and '.join(numbers)} {word.removesuffix('s') if numbers == ['1'] else word}"
 
 
 def _separations(ds: xr.Dataset) -> str:
@@ -328,7 +333,8 @@ def _separations(ds: xr.Dataset) -> str:
         return ""
     found = np.atleast_1d(ds["separations_per_cycle"].values)
     found = found[np.isfinite(found)]
-    return f", {' and '.join(f'{n:.4g}' for n in found)} separations per cycle" if found.any() else ""
+    numbers = [f"{n:.4g}" for n in found]
+    return f", {_counted(numbers, 'separations')} per cycle" if found.any() else ""
 
 
 def title_of(ds: xr.Dataset) -> str:

@@ -140,7 +140,6 @@ def test_keys_without_meaning_are_refused_by_name(config, capsys, change, named)
         ("curves",),
         ("response", "--r", "0.5", "--beta", "0.3"),
         ("map", "-o", "pad.zarr"),
-        ("explore", "--no-browser"),
         ("reduce",),
     ],
 )

@@ -399,9 +399,9 @@ identify rig.toml -o rig.json
 design question.toml -o answer.txt
     -o must end in .nc; got answer.txt
 polt map.nc
-    unknown command 'polt' (did you mean plot?); valid: map, curves, boundaries, response, explore, identify, design, reduce, history, spectrum, plot, export, info, init, help, setup
+    unknown command 'polt' (did you mean plot?); valid: map, curves, response, explore, identify, design, reduce, history, spectrum, plot, export, info, init, help, setup
 help polt
-    unknown command 'polt' (did you mean plot?); valid: map, curves, boundaries, response, explore, identify, design, reduce, history, spectrum, plot, export, info, init, help, setup
+    unknown command 'polt' (did you mean plot?); valid: map, curves, response, explore, identify, design, reduce, history, spectrum, plot, export, info, init, help, setup
 map good.toml --thread 2
     unrecognized arguments: --thread 2 (did you mean --threads?) (see frictionmap --help)
 plot map.nc --no-legends

@@ -105,7 +105,7 @@ def test_info(files, end, capsys):
     told = capsys.readouterr().out
     assert "sample                0, 1, 2" in told
     assert "varied: damping_ratios, mass_ratios, stiffness_ratios" in " ".join(told.split())
-    axes = ["damping_ratios", "sample", "mass_ratios_2", "stiffness_ratios_2", "mu", "r", "beta"]
+    axes = ["mu", "r", "beta", "damping_ratios", "sample", "mass_ratios_2", "stiffness_ratios_2"]
     lines = [line.split() for line in told.split("variables")[0].split("axes\n")[1].splitlines()]
     assert [line[0] for line in lines] == axes
     assert "regime                (..., mu, r, beta) motion regime of the steady state" in told

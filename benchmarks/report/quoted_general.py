@@ -195,7 +195,8 @@ def _many_rows(many: dict) -> Iterator[tuple[str, ...]]:
             key = f"seconds from {start}"
             shown = [n for n in rows if n in ("1", "8", "16", "32", "64")] or list(rows)
             times = ", ".join(f"{_seconds(rows[n], key)} (N = {n})" for n in shown)
-            yield f"{kind}, {words}", times, f"N^{many['slopes'][kind][key]['power']:.1f}"
+            power = many["slopes"][kind][key]["power"]  # none of a run with few numbers of contacts
+            yield f"{kind}, {words}", times, "-" if power is None else f"N^{power:.1f}"
 
 
 def many_contacts_lines(many: dict) -> list[str]:
@@ -207,8 +208,7 @@ def many_contacts_lines(many: dict) -> list[str]:
         "### Number of contacts",
         "",
         "Frames have as many storeys, and rings as many unequal blades, as contacts. Friction is 0.3 times "
-        f"that with which no contact slips, and zeta is 0.05. {unresolved or 'None'} of {whole:,} "
-        "cells had no answer.",
+        f"that with which no contact slips, and zeta is 0.05. {unresolved} of {whole:,} cells had no answer.",
         *markdown(("system", "time per cell", "growth from N = 8"), list(_many_rows(many))),
         "",
         "![Time of a cell over the number of contacts](../benchmarks/results/many_contacts.png)",

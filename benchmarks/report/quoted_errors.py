@@ -277,7 +277,7 @@ def stress_lines(stress: dict) -> list[str]:
 
 def _steady_rows(steady: dict) -> Iterator[tuple[str, ...]]:
     for name, row in steady.items():
-        if "differences by cause" not in row:
+        if "differences by cause" not in (row or {}):  # the commit, the machine
             continue
         causes = ", ".join(f"{cause} ({count:,})" for cause, count in row["differences by cause"].items())
         yield (

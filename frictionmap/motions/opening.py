@@ -136,7 +136,7 @@ class OpeningMotions(Motions):
         )  # fmt: skip
 
     def _kept(self, rounding: np.ndarray, room: np.ndarray) -> Kept:
-        """Memory of what is kept; further forces are forces of further contacts."""
+        """Memory of the results of a motion; further forces are forces of further contacts."""
         general, contacts = self.problem, self.phases.law.size
         wider = general._replace(chi=np.concatenate((general.chi, self.phases.normal, self.phases.along)))
         record = make_record(general, np.empty((0, 0)), 0)

@@ -343,7 +343,7 @@ def _follow_interval(problem, friction, memory, course, kept, done, listed):
     parts = _parts_of(problem, friction, step)
     _set_length(problem, memory, step / parts)
     tables = memory.tables
-    begin = kept.clock[0] = course.times[k] + (done - k) * step
+    begin = course.times[k] + (done - k) * step
     for part in range(parts):
         kept.clock[0] = begin + step * (part / parts)
         put_part(memory.row.loads, course.pieces[k], done - k + part / parts, parts)

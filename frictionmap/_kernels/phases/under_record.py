@@ -56,7 +56,7 @@ DONE, SINCE = 0, 1
 #: Events in a part of an interval at most: more are chattering.
 _MOST_EVENTS = 2000
 
-#: Terms of what is watched that may be zero where a step begins: at rest under a load that begins as t^4.
+#: Leading terms of a watched quantity that may be zero where a step begins, as at rest under a load t^4.
 _MOST_ZEROS = 8
 
 #: A force within this share of its limit is at it.

@@ -227,7 +227,7 @@ def test_a_base_that_moves_is_the_force_in_absolute_coordinates():
 @pytest.mark.parametrize("springs", [{}, {"springs": [{"masses": [1, 2], "gap": 1e3, "stiffness": 1.0}]}])
 @pytest.mark.parametrize(("mu", "stiffness"), [(1.2, None), (1.0, None), (1.0, 2.0)])
 def test_a_wall_is_left_behind_by_a_base_that_keeps_its_velocity(mu, stiffness, springs):
-    """After the record as under one that goes on with zeros; the wall moves relative to the base."""
+    """After the record as under one that continues with zeros; the wall moves relative to the base."""
     own = {} if stiffness is None else {"stiffness": stiffness}
     system = fm.System(
         mass_ratios=[1.0] * 3, stiffness_ratios=[1.0] * 3, damping_ratios=0.05, excitation="base",

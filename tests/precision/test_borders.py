@@ -268,5 +268,6 @@ def test_boundaries_are_not_among_the_borders(window, kinds):
         known = ~np.isnan(x)
         ends = fm.boundaries(WALL, x[known], mu=mu)
         for name in ("beta_lim", "beta_stick"):
-            assert np.abs(y[known] / ends[name].values[0] - 1.0).max() > 1e-6
+            away = np.abs(y[known] / ends[name].values[0] - 1.0)
+            assert np.median(away) > 1e-6  # they may share an end
     assert kinds <= set(ds.border_kind.values.tolist())

@@ -19,18 +19,18 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
 
 #: Sub-commands: each has a module of its name in `measures` with a `run`, imported only when it is asked for.
-#: The seconds are estimates for a whole run on a quiet machine with two processors, compilation included.
+#: The seconds are those of whole runs on a quiet machine with two processors, compilation included.
 BENCHMARKS = {
-    "accuracy": 150,
+    "accuracy": 480,
     "peers": 100,
-    "scaling": 210,
-    "startup": 110,
-    "stress": 270,
+    "scaling": 320,
+    "startup": 180,
+    "stress": 590,
     "steady": 90,
-    "structures": 110,
-    "general": 120,
+    "structures": 140,
+    "general": 360,
     "continuation": 70,
-    "laws": 110,
+    "laws": 270,
     "design": 130,
     "static": 60,
     "bound": 30,
@@ -39,12 +39,12 @@ BENCHMARKS = {
     "first_minute": 100,
     "coupling": 60,
     "coverage": 320,
-    "consistency": 60,
+    "consistency": 580,
     "spectrum": 25,
-    "histories": 45,
-    "banks": 30,
-    "many_contacts": 130,
-    "second_starts": 120,
+    "histories": 60,
+    "banks": 90,
+    "many_contacts": 420,
+    "second_starts": 180,
 }
 
 

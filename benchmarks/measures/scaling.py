@@ -101,7 +101,7 @@ def agreement(one: xr.Dataset, other: xr.Dataset) -> tuple[bool, float]:
     same = one.regime.equals(other.regime) and one.stops_per_cycle.equals(other.stops_per_cycle)
     z, other_z = one.contact_amplitude.values, other.contact_amplitude.values
     moves = (z > 0.0) & np.isfinite(z) & np.isfinite(other_z)
-    off = np.abs(z - other_z)[moves] / z[moves]
+    off = np.abs(z[moves] - other_z[moves]) / z[moves]
     return same, float(off.max(initial=0.0))
 
 

@@ -120,8 +120,8 @@ def test_several_benchmarks_continue_with_what_is_missing(monkeypatch, tmp_path,
     assert sum(" of 3, about " in line for line in said) == 3
 
 
-def test_all_benchmarks_take_at_most_three_quarters_of_an_hour():
-    assert sum(BENCHMARKS.values()) <= 2700
+def test_all_benchmarks_take_at_most_an_hour_and_a_half():
+    assert sum(BENCHMARKS.values()) <= 5400
 
 
 def named(requirement):

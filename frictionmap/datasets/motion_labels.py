@@ -232,11 +232,15 @@ SI_UNITS = {
 }  # fmt: skip
 
 
+def spans(time: np.ndarray, happens: np.ndarray) -> np.ndarray:
+    """Beginnings and ends (k, 2) of the times in which something happens, of a bool at every sample."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], happens, [False])).astype(int)))
+    return time[np.minimum(edges, time.size - 1)].reshape(-1, 2)
+
+
 def stuck_times(time: np.ndarray, directions: np.ndarray) -> np.ndarray:
     """Beginnings and ends of the times in which all contacts stick, of directions (contact, time)."""
-    stuck = (directions == 0).all(axis=0)
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], stuck, [False])).astype(int)))
-    return time[np.minimum(edges, time.size - 1)].reshape(-1, 2)
+    return spans(time, (directions == 0).all(axis=0))
 
 
 def si_name(name: str, measure: str) -> str:

@@ -282,7 +282,10 @@ def _numbers(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
     """What is listed of a motion, and when the first contact slides, at the beginning or later."""
     yield from rows_of_motion(ds)
     time = ds["time"].values
-    slides = time[(ds["direction"].values.reshape(-1, time.size) != 0).any(axis=0)]
+    slides = ds["direction"].values.reshape(-1, time.size) != 0
+    if "open" in ds:  # in an open contact nothing slides
+        slides &= ds["open"].values.reshape(-1, time.size) == 0
+    slides = time[slides.any(axis=0)]
     unit = " s" if ds["time"].attrs.get("units") == "s" else ""
     yield "slides first at", f"{slides[0]:.4g}{unit}" if slides.size else "never"
 

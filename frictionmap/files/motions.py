@@ -157,11 +157,21 @@ _ROWS = (
 )
 
 
+#: What is counted of a motion.
+_COUNTED = (
+    ("stops", "stops"),
+    ("slips", "slips"),
+    ("turns", "turns"),
+    ("separations", "separations"),
+    ("spring_crossings", "knots passed"),
+)
+
+
 def rows_of_motion(one: xr.Dataset) -> Iterator[tuple[str, str]]:
     """What is listed of one motion: names, and values in words."""
     code = STATUSES[int(one["status"])]
     yield "status", code.name if code.value == 0 else f"{code.name}: {code.meaning}"
-    for name, words in (("stops", "stops"), ("slips", "slips"), ("turns", "turns")):
+    for name, words in _COUNTED:
         if name in one and np.isfinite(one[name].values).any():
             yield words, _listed(one[name].values)
     for words, name, measure, unit in _ROWS:

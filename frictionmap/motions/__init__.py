@@ -23,6 +23,7 @@ opening          motions of systems with such contacts and piecewise linear spri
 statistics       medians, quantiles, exceedance over records; means of stationary motions over time
 averages         statistics of stationary motions beside their histories
 holding          the largest forces in contacts that all hold: the friction from which nothing moves
+opening_holding  the same of contacts that open, and beside piecewise linear springs
 energies         energies of one motion over time
 further_axes     motions and spectra along further axes in one dataset
 dataset          `history`: motions in time as labelled variables

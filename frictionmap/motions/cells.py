@@ -1,14 +1,16 @@
 """The motions of a grid of records, scales and friction, on several threads."""
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .._kernels.general.record import make_record
 from .._kernels.general.series import Friction
+from .._kernels.history.course import CREEPING, Course
 from .._kernels.history.kept import Kept, make_kept
-from .._kernels.history.motion import CREEPING, Course, follow_record, make_memory
+from .._kernels.history.motion import Memory, make_memory
+from .._kernels.motions_in_time import NEEDS_BED, SINCE, follow_record
 from .bed import held
 from .channels import Drive
 from .starts import Start
@@ -22,6 +24,9 @@ _MOST_AFTER = 200_000
 
 #: Distinct lengths of intervals that have tables, at most; else all intervals are followed by their series.
 _MOST_LENGTHS = 64
+
+#: Places in `Opened.base` of the states kept.
+SHOWN = slice(2, None)
 
 #: Rounding error of a sum, relative to its terms.
 _ROUNDING = 2.0**-50
@@ -42,12 +47,14 @@ class Opened(NamedTuple):
     separations: np.ndarray  # (N,)
     time: np.ndarray  # (N,) in which a contact is open
     crossings: np.ndarray  # (S,) knots that a spring has passed
+    base: np.ndarray  # (2, 2 + states) place and velocity of the base: at first, at the end, at the states
 
 
 class Found(NamedTuple):
     """One motion."""
 
     status: int
+    scale: float  # of the record
     kept: Kept
     counts: np.ndarray
     state: np.ndarray  # (2, m) at the end
@@ -72,6 +79,25 @@ def room_for(asked: Asked, steps: np.ndarray, limits: np.ndarray) -> np.ndarray:
         samples = steps.size // asked.every + int(limits[1] * (1 - limits[2]))
     expected = _FIRST + steps.size // _SAMPLES_PER_EVENT
     return np.array([expected, samples and samples + 2 * expected * int(limits[3]) + _FIRST])
+
+
+class Kernels(NamedTuple):
+    """What the kernels follow a motion with: of `general`, or of `phases`."""
+
+    problem: Any
+    friction: Any
+    memory: Callable[[Course, np.ndarray], tuple[Any, Kept]]  # with room for so many events and states
+    bed: Callable[[Any], Any]  # of the phase in which a memory is; None: the one to begin with
+
+
+class Ran(NamedTuple):
+    """A motion as the kernels leave it."""
+
+    status: int
+    memory: Any
+    kept: Kept
+    end: float  # when that is
+    asleep: float  # since when no contact moves again; NaN where this is not proved
 
 
 class Motions:
@@ -111,6 +137,30 @@ class Motions:
         kinetic, static = np.array([group.friction(beta, mu) for group in groups], dtype=float).T
         return self.follow(kinetic, static, scale, asked, events)
 
+    def run(self, asked: Asked, scale: float, events: bool, kernels: Kernels) -> Ran:
+        """Follow one motion; where there is no room for all its events, once more with more.
+
+        events : whether states at events are kept, where any are
+        """
+        steps, limits = self.limits_of(asked, events and asked.every > 0)
+        terms = np.ascontiguousarray(self.terms_of(scale, steps))
+        course = Course(terms, steps, self.drive.times, self.drive.jumps, self.ties)
+        start, room = starting(self.structure, asked.start), room_for(asked, steps, limits)
+        while True:
+            memory, kept = kernels.memory(course, room)
+            state, bed, status = np.array([-1, -1]), kernels.bed(None), NEEDS_BED
+            while status == NEEDS_BED:
+                status = int(follow_record(
+                    kernels.problem, kernels.friction, memory, course, start, asked.start.sense, kept, bed,
+                    limits, state,
+                ))  # fmt: skip
+                bed = kernels.bed(memory) if status == NEEDS_BED else bed
+            if (kept.counts <= room).all():
+                break
+            room = np.maximum(room, kept.counts)
+        end, asleep = (self.time_after(int(k), steps) for k in state)
+        return Ran(status, memory, kept, end, asleep if state[SINCE] >= 0 else np.nan)
+
     def follow(
         self,
         kinetic: np.ndarray,
@@ -120,65 +170,65 @@ class Motions:
         events: bool = True,
         rows: slice = slice(None),
     ) -> Found:
-        """Follow one motion; where there is no room for all its events, once more with more.
+        """Follow one motion; see `run`.
 
-        events : whether states at events are kept, where any are
         rows : the watched quantities whose peaks are kept
         """
-        steps, limits = self.limits_of(asked, events and asked.every > 0)
-        terms = self.terms_of(scale, steps)
-        friction = Friction(np.ascontiguousarray(kinetic), np.ascontiguousarray(static))
-        start = starting(self.structure, asked.start)
-        bed = self.held.bed
-        room = room_for(asked, steps, limits)
+        problem, friction = (
+            self.problem,
+            Friction(np.ascontiguousarray(kinetic), np.ascontiguousarray(static)),
+        )
         weights = np.ascontiguousarray(self.watched.weights[rows])
-        rounding = self.rounding_of(static, scale)[rows]
-        lengths = len(np.unique(steps))
-        lengths = lengths if lengths <= _MOST_LENGTHS else 0
-        course = Course(np.ascontiguousarray(terms), steps, self.drive.times, self.drive.jumps, self.ties)
-        problem = self.problem
-        while True:
-            masses = np.empty((0, problem.squares.size))
-            record = make_record(problem, masses, 0)
+        rounding = self.rounding_of(self.watched.weights, static, scale)[rows]
+        one = problem._replace(rates=np.ones(1))  # room for the channels of one interval
+        still = problem._replace(belt=np.zeros_like(problem.belt))
+
+        def memory(course: Course, room: np.ndarray) -> tuple[Memory, Kept]:
+            lengths = len(np.unique(course.steps))
+            lengths = lengths if lengths <= _MOST_LENGTHS else 0
+            record = make_record(problem, np.empty((0, problem.squares.size)), 0)
             kept = make_kept(problem, weights, rounding, record, room)
-            one = problem._replace(rates=np.ones(1))  # room for the channels of one interval
-            still = problem._replace(belt=np.zeros_like(problem.belt))
-            memory = make_memory(one, still, weights.shape[0], terms.shape[2], lengths)
-            status, done, asleep = follow_record(
-                problem, friction, memory, course, start, asked.start.sense, kept, bed, limits
-            )
-            if (kept.counts <= room).all():
-                break
-            room = np.maximum(room, kept.counts)
-        motion = memory.motion
+            return make_memory(one, still, weights.shape[0], course.pieces.shape[2], lengths), kept
+
+        ran = self.run(asked, scale, events, Kernels(problem, friction, memory, lambda _: self.held.bed))
+        motion = ran.memory.motion
         state = motion.state[:2, : problem.squares.size]
-        end, slept = (self.time_after(k, steps) for k in (done, asleep))
         found = Found(
-            int(status), kept, memory.counts, state, motion.sense, end, slept if asleep >= 0 else np.nan, None
+            ran.status, scale, ran.kept, ran.memory.counts, state, motion.sense, ran.end, ran.asleep, None
         )
         return found._replace(place=self._place(found))
 
-    def rounding_of(self, static: np.ndarray, scale: float, further: Sequence[np.ndarray] = ()) -> np.ndarray:
-        """Rounding errors of the watched quantities, from the sizes of what they are sums of.
+    def rounding_of(
+        self, weights: np.ndarray, static: np.ndarray, scale: float, further: Sequence[np.ndarray] = ()
+    ) -> np.ndarray:
+        """Rounding errors of watched quantities, from the sizes of what they are sums of.
 
-        further : rows by the modes of forces beside those in contacts
+        further : sizes of forces beside those in contacts
         """
-        problem = self.problem
-        size = problem.sizes[0] * abs(scale)
-        loads = np.abs(self.drive.terms).sum(axis=2).max(axis=0) * max(1.0, abs(scale))
+        problem, size, loads = self.problem, self.size_of(scale), self.loads_of(scale)
         modes = np.full(problem.squares.size, size)
         forces = np.minimum(static, float(np.abs(problem.push).sum(axis=0) @ loads))
-        others = [np.abs(one).sum(axis=1) * size for one in further]
-        units = np.concatenate((modes, modes * problem.rates[0], forces, *others, loads))
-        return _ROUNDING * (np.abs(self.watched.weights) @ units)
+        units = np.concatenate((modes, modes * problem.rates[0], forces, *further, loads))
+        return _ROUNDING * (np.abs(weights) @ units)
+
+    def size_of(self, scale: float) -> float:
+        """Displacement that the record can be expected to cause."""
+        return float(self.problem.sizes[0] * abs(scale))
+
+    def loads_of(self, scale: float) -> np.ndarray:
+        """Bounds on the channels, (D,)."""
+        return np.asarray(np.abs(self.drive.terms).sum(axis=2).max(axis=0) * max(1.0, abs(scale)))
 
     def time_after(self, intervals: int, steps: np.ndarray) -> float:
         """Time after a number of intervals."""
         last = steps.size - 1
         return float(self.drive.times[min(intervals, last)] + max(0, intervals - last) * steps[-1])
 
-    def energy(self, q: np.ndarray, p: np.ndarray, f: np.ndarray, opened: Opened | None) -> np.ndarray:
-        """Energy of masses and springs in states (..., times), also of the springs in contacts."""
+    def energy(self, q: np.ndarray, p: np.ndarray, f: np.ndarray, one: Found, at: int | slice) -> np.ndarray:
+        """Energy of masses and springs in states (..., times), also of the springs in contacts.
+
+        at : 0: that at the beginning of the motion; 1: that at its end; SHOWN: the states kept
+        """
         elastic = self.structure.spring > 0.0
         springs = (f[elastic].T ** 2 / self.structure.spring[elastic]).sum(axis=-1)
         return np.asarray(0.5 * ((p**2).sum(axis=0) + self.problem.squares @ q**2 + springs))
@@ -206,5 +256,6 @@ class Motions:
         """Where the contacts come to rest, (N,)."""
         assert one.place is not None
         moving = self.problem.base @ self.drive.terms[-1, :, 1] != 0.0
-        places = self.problem.chi @ one.place - self.problem.base @ self.drive.terms[-1, :, 0]
+        walls = one.scale * self.drive.terms[-1, :, 0]
+        places = self.problem.chi @ one.place - self.problem.base @ walls
         return np.where(moving, np.nan, places)

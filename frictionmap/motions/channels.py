@@ -10,6 +10,9 @@ from ..model.system import System
 from .pieces import SAME, Pieces, derivative, extremes, integral, on_times, padded, scaled
 from .record import Record
 
+#: A sum within this share of its terms is 0.
+_SAME = 1e-12
+
 
 class Channel(NamedTuple):
     """A function of time and what it drives, see `_kernels.general.problem`."""
@@ -19,6 +22,7 @@ class Channel(NamedTuple):
     base: np.ndarray  # (N,) displacement of the walls
     normal: np.ndarray  # (N,) variation of the normal loads
     moves_on: bool = False  # whether it goes on at its last rate after the record, as a base does
+    place: bool = False  # whether it is the displacement of the base
 
 
 class Drive(NamedTuple):
@@ -32,6 +36,7 @@ class Drive(NamedTuple):
     base: np.ndarray  # (N, D)
     normal: np.ndarray  # (N, D)
     acceleration: np.ndarray  # (D,) 1 where the channel is the acceleration of the base
+    place: np.ndarray  # (D,) bool: whether it is the displacement of the base
 
 
 class Scale(NamedTuple):
@@ -81,16 +86,49 @@ def wall_shares(system: System) -> np.ndarray:
     return np.array([float(group.base) - group.vector.sum() for group in groups])
 
 
+class Ground(NamedTuple):
+    """What the motion of the base does to contacts that open and to piecewise linear springs.
+
+    It is added to their displacements relative to the base: the ground does not move.
+    """
+
+    normal: np.ndarray  # (N,) d.x per motion of the base
+    along: np.ndarray  # (S,) displacements of the springs
+
+    @property
+    def acts(self) -> bool:
+        """Whether the place of the base matters to any of them."""
+        return bool(self.normal.any() or self.along.any())
+
+
+def ground_of(general: ContactSystem) -> Ground:
+    """The sums of the directions, which are those of a motion of all masses; of two masses they are 0."""
+    normal = [0.0 if one.normal is None else _sum(one.normal.direction) for one in general.groups]
+    return Ground(np.array(normal), np.array([_sum(one.direction) for one in general.springs]))
+
+
+def _sum(direction: np.ndarray) -> float:
+    """Sum of a direction without rounding error."""
+    found = float(direction.sum())
+    return found if abs(found) > _SAME * np.abs(direction).sum() else 0.0
+
+
+def sees_place(system: System) -> bool:
+    """Whether the displacement of the base acts on a structure, too."""
+    return bool(wall_shares(system).any()) or ground_of(system.contact_system).acts
+
+
 def _base(system: System, general: ContactSystem, record: Record, pieces: Pieces) -> list[Channel]:
     iota, still = np.ones(system.n), np.zeros(general.count)
-    walls = wall_shares(system)
     grounded = not is_relative_damping(system) and system.modes.damping.any()
-    if record.quantity == "acceleration" and not walls.any() and not grounded:  # no integrals
+    placed = sees_place(system)
+    if record.quantity == "acceleration" and not placed and not grounded:  # no integrals
         return [Channel(pieces, -system.modes.mass @ iota, still, still)]
     place, rate, acceleration = _motion_of_base(record, pieces)
     found = [Channel(acceleration, -system.modes.mass @ iota, still, still)]
-    if walls.any():
-        found.append(Channel(place, np.zeros(system.n), walls, still, record.quantity != "displacement"))
+    if placed:
+        moves_on = record.quantity != "displacement"
+        found.append(Channel(place, np.zeros(system.n), wall_shares(system), still, moves_on, True))
     if grounded:
         push = -system.modes.damping @ iota
         found.append(Channel(rate, push, still, still, record.quantity != "displacement"))
@@ -128,11 +166,11 @@ def _goes_on(one: Channel, end: float) -> Pieces:
     """The pieces of a channel up to a common end: a base that another record outlasts keeps its place."""
     pieces = one.pieces
     rest = end - pieces.times[-1]
-    if rest <= 0.0 or not (one.base.any() or one.moves_on):
+    if rest <= 0.0 or not (one.place or one.moves_on):
         return pieces
     last = np.zeros((1, pieces.terms.shape[1]))
     last[0, 0] = pieces.ends[-1]
-    if one.moves_on and one.base.any():
+    if one.moves_on and one.place:
         last[0, 1] = pieces.terms[-1] @ np.arange(last.size) / pieces.steps[-1] * rest
     return Pieces(
         np.append(pieces.times, end), np.append(pieces.steps, rest), np.vstack((pieces.terms, last))
@@ -163,9 +201,9 @@ def drive_of(system: System, record: Record, scale: Scale) -> Drive:
     after, step = [], float(steps.max())
     for one, own in zip(channels, terms, strict=True):
         last = np.zeros((1, own.shape[1]))
-        if one.base.any() or one.moves_on:
+        if one.place or one.moves_on:
             last[0, 0] = own[-1].sum()
-            if one.moves_on and one.base.any():
+            if one.moves_on and one.place:
                 last[0, 1] = own[-1] @ np.arange(own.shape[1]) / steps[-1] * step
         after.append(last)
     table = np.stack([np.vstack(pair) for pair in zip(terms, after, strict=True)], axis=1)
@@ -176,5 +214,5 @@ def drive_of(system: System, record: Record, scale: Scale) -> Drive:
         times, np.append(steps, step), np.ascontiguousarray(table), jumps,
         np.array([one.push for one in channels]).T, np.array([one.base for one in channels]).T,
         np.array([one.normal for one in channels]).T,
-        np.concatenate((acceleration, np.zeros(len(normal)))),
+        np.concatenate((acceleration, np.zeros(len(normal)))), np.array([one.place for one in channels]),
     )  # fmt: skip

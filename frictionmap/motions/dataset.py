@@ -21,12 +21,13 @@ from ..phases.dataset import spring_coordinates
 from ..units.scales import Scales, Units, scales_of
 from ..version import __version__
 from .averages import asked_averages, averages_of, describe_averages
-from .cells import Asked, Found, Motions
+from .cells import SHOWN, Asked, Found, Motions
 from .channels import drive_of
 from .energies import energies_over_time
 from .further_axes import axis_coordinates, part_of_progress, stacked
-from .holding import largest_forces
+from .holding import holding_friction
 from .opening import OpeningMotions
+from .opening_holding import opening_holding_friction
 from .origins import record_attributes
 from .record import Record, checked_records
 from .scaling import friction_ratios, motion_scales, scale_of
@@ -136,7 +137,7 @@ def history(
         accelerations of friction over m_1: "0.05 g".
     start : "rest", mapping, Dataset or path
         ``{"x": [...], "v": [...]}``: displacements and velocities of the masses; or the last state of a
-        `history`, or the state at tau = 0 of a `response`.
+        `history`, or the state at tau = 0 of a `response`, taken relative to its base.
     after : "rest" or float
         How long the motion is followed after the record, without load: until no contact can move again,
         which is proved by the energy, or a time, in seconds for records with a unit.
@@ -230,8 +231,7 @@ def _motions(
     single = int(np.prod(grid.shape)) == 1 and not several
     if not isinstance(wanted.beta_hold, bool):
         raise InputError("beta_hold", f"must be true or false; got {checks.one_line(wanted.beta_hold)}")
-    opens = structure.system.contact_system.has_phases
-    holds = wanted.beta_hold and not asked.start.moves and not opens
+    holds = wanted.beta_hold and not asked.start.moves
     found = _follow(structure, grid, scales, asked, (single, holds), threads, progress, watch)
     variables, coords = _labelled(structure, grid, asked, found, single)
     attrs = {
@@ -294,7 +294,7 @@ class Followed(NamedTuple):
 
     motions: list[Motions]  # of every record
     found: np.ndarray  # of Found, the shape of the grid
-    hold: np.ndarray | None  # (records, N) largest force in every contact with all held, where wanted
+    hold: np.ndarray | None  # (records, scales, mu, N) static friction that holds every contact, where wanted
 
 
 def _follow(
@@ -304,7 +304,9 @@ def _follow(
     """Follow all motions; wanted: the states at events, and the forces with all contacts held."""
     general = structure.system.contact_system
     factors = [scale_of(one, scales) for one in grid.records]
-    kind = OpeningMotions if general.has_phases else Motions
+    kind, held = (
+        (OpeningMotions, opening_holding_friction) if general.has_phases else (Motions, holding_friction)
+    )
     motions = [
         kind(structure, drive_of(structure.system, one, factor))
         for one, factor in zip(grid.records, factors, strict=True)
@@ -312,7 +314,7 @@ def _follow(
     each = [asked._replace(after=asked.after and asked.after * factor.time) for factor in factors]
     found = np.empty(grid.shape, dtype=object)
     single, holds = wanted
-    hold = np.empty((len(motions), general.count))
+    hold = np.empty((*grid.shape[:3], general.count))
 
     def task(i: int, k: int, m: int, b: int) -> Callable[[], None]:
         def run() -> None:
@@ -322,7 +324,7 @@ def _follow(
 
     def hold_task(i: int) -> Callable[[], None]:
         def run() -> None:
-            hold[i] = largest_forces(motions[i], each[i])
+            hold[i] = held(motions[i], grid.scale, grid.mu, each[i])
 
         return run
 
@@ -357,8 +359,8 @@ def _scalars(structure: Structure, motions: Motions, one: Found, asked: Asked) -
     stops = kept.changes[0]
     start = asked.start
     q, p = one.state
-    energy = float(motions.energy(q, p, kept.forces, one.opened))
-    before = float(motions.energy(start.q, start.p, start.f, one.opened))
+    energy = float(motions.energy(q, p, kept.forces, one, 1))
+    before = float(motions.energy(start.q, start.p, start.f, one, 0))
     walls = float(kept.works[1] + kept.record.works[1].sum())
     rests = one.place is not None
     return _peaks(structure, motions, one) | motions.further_scalars(one) | {
@@ -389,7 +391,7 @@ def _traces(structure: Structure, motions: Motions, one: Found, energies: bool) 
         slider = np.where(kt > 0.0, z - f / kt, np.nan)
     if energies:
         still = np.where(kt > 0.0, slider, z)
-        stored = motions.energy(columns[:m], columns[m : 2 * m], f, one.opened)
+        stored = motions.energy(columns[:m], columns[m : 2 * m], f, one, SHOWN)
         found = energies_over_time(structure, stored, motions.problem.belt, states, still)
     else:
         found = {}
@@ -431,8 +433,9 @@ def _hold(structure: Structure, grid: Grid, forces: np.ndarray) -> np.ndarray:
         for m, mu in enumerate(grid.mu):
             _, fixed = group.friction(0.0, mu)
             _, one = group.friction(1.0, mu)
-            needed = np.abs(grid.scale)[np.newaxis] * forces[:, j, np.newaxis] - fixed
-            own = np.where(needed <= 0.0, 0.0, needed / (one - fixed) if one > fixed else np.inf)
+            needed = forces[:, :, m, j] - fixed
+            endless = np.where(np.isnan(needed), np.nan, np.inf)
+            own = np.where(needed <= 0.0, 0.0, needed / (one - fixed) if one > fixed else endless)
             found[:, :, m] = np.maximum(found[:, :, m], own)
     return found
 

@@ -19,16 +19,22 @@ HOLDS = 1e150
 
 #: Longest periods of the held structure after a record in which its largest force is looked for: undamped
 #: modes of several frequencies come nearer and nearer to their bound without an end.
-_MOST_PERIODS = 100.0
+MOST_PERIODS = 100.0
 
 #: A bound within this share of a force is that force with rounding error.
-_SAME = 1e-12
+SAME = 1e-12
 
 #: Ratios beyond this multiple of the force are those of a normal load of 0.
 _INFINITE = 1e12
 
 #: Steps to a ratio at most; each one squares its error.
 _MOST_STEPS = 60
+
+
+def holding_friction(motions: Motions, scale: np.ndarray, mu: np.ndarray, asked: Asked) -> np.ndarray:
+    """Static friction that holds the contacts, (scales, mu, N)."""
+    found = np.abs(scale)[:, np.newaxis] * largest_forces(motions, asked)
+    return np.repeat(found[:, np.newaxis], mu.size, axis=1)
 
 
 def largest_forces(motions: Motions, asked: Asked) -> np.ndarray:
@@ -44,8 +50,8 @@ def largest_forces(motions: Motions, asked: Asked) -> np.ndarray:
         after = period if motions.held.bed.active[0] else 0.0
     while True:
         forces, found = _ratios(motions, held, asked._replace(after=after, every=0))
-        done = asked.after is not None or not 0.0 < after < _MOST_PERIODS * period
-        if done or (_bound(motions, found) <= forces * (1.0 + _SAME)).all():
+        done = asked.after is not None or not 0.0 < after < MOST_PERIODS * period
+        if done or (_bound(motions, found) <= forces * (1.0 + SAME)).all():
             return forces
         after *= 2.0
 
@@ -74,7 +80,7 @@ def _ratios(motions: Motions, held: Motions, asked: Asked) -> tuple[np.ndarray, 
         if not ratio.any():
             largest = np.abs((high, low)).max(axis=0)
         new = np.where(new > _INFINITE * largest, np.inf, new)
-        if not varying.any() or (new <= ratio * (1.0 + _SAME)).all():
+        if not varying.any() or (new <= ratio * (1.0 + SAME)).all():
             return new, found
         ratio = new
     return ratio, found

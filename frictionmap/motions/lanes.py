@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._kernels.compiler.vectors import LANES
-from .._kernels.history.motion import CREEPING, RESOLVED
+from .._kernels.history.course import CREEPING, RESOLVED
 from .._kernels.history.spectrum import follow_lanes, rest_lanes
 from .._kernels.history.spectrum_lanes import (
     ASLEEP,

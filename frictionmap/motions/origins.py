@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..model.system import System
-from .channels import is_relative_damping, wall_shares
+from .channels import is_relative_damping, sees_place
 from .pieces import integral
 from .record import Record
 
@@ -15,9 +15,7 @@ _DRIFTS = 0.01
 
 def uses_place(system: System) -> bool:
     """Whether the displacement or the velocity of the base acts on a structure, too."""
-    return bool(wall_shares(system).any()) or (
-        not is_relative_damping(system) and bool(system.modes.damping.any())
-    )
+    return sees_place(system) or (not is_relative_damping(system) and bool(system.modes.damping.any()))
 
 
 def end_velocity(record: Record) -> float:

@@ -18,6 +18,8 @@ class Phase(NamedTuple):
 
     bed: Bed
     rest: np.ndarray  # (m, 2 m + N + 1) modes at the place of rest
+    slowest: float  # lowest natural frequency; infinite if nothing vibrates
+    held: np.ndarray  # (N,) bool: contacts that friction holds
 
 
 class _Forces(NamedTuple):
@@ -65,12 +67,16 @@ class _Rows(NamedTuple):
         self.gains.append(float(np.sqrt(by_place @ by_place + rate)))
 
 
-def bed_of(problem: Problem, cell: Cell, pattern: np.ndarray, still: bool) -> Phase:
-    """Build it; still: whether no wall moves without a load."""
+def bed_of(problem: Problem, cell: Cell, pattern: np.ndarray, free: int, still: bool) -> Phase:
+    """Build it.
+
+    free : modes of the structure; others are the place of the base, which stays
+    still : whether no wall moves without a load
+    """
     contacts, modes = problem.chi.shape
     size = 2 * modes + contacts + 1
     acting = _forces(problem, cell, pattern)
-    basis = basis_beside(problem.chi[acting.rigid], modes)
+    basis = np.pad(basis_beside(problem.chi[acting.rigid, :free], free), ((0, modes - free), (0, 0)))
     within = basis.T @ acting.stiffness @ basis
     squares, shapes = np.linalg.eigh(within) if basis.shape[1] else (np.empty(0), np.empty((0, 0)))
     scale = max(np.abs(squares).max(initial=0.0), problem.squares.max(initial=0.0))
@@ -89,7 +95,7 @@ def bed_of(problem: Problem, cell: Cell, pattern: np.ndarray, still: bool) -> Ph
             np.array(rows.values).reshape(len(rows.values), size), np.array(rows.gains),
             np.array([active], dtype=np.int64),
         ),
-        np.ascontiguousarray(rest),
+        np.ascontiguousarray(rest), float(omega.min(initial=np.inf)), acting.held,
     )  # fmt: skip
 
 

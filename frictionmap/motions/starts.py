@@ -8,9 +8,11 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
-from .._kernels.history.motion import BY_LAW
+from .._kernels.history.course import BY_LAW
 from ..errors import InputError
 from ..files.opening import open as open_dataset
+from ..model.general import DISPLACEMENT
+from ..model.system import System
 from .structure import Structure
 
 
@@ -66,6 +68,13 @@ def _from_mapping(structure: Structure, given: Mapping) -> Start:
     return Start(_modal(structure, x), _modal(structure, v), np.zeros(contacts), np.full(contacts, BY_LAW))
 
 
+def _base_at_start(system: System, r: float) -> tuple[float, float]:
+    """Displacement of the base of a response at tau = 0, and its velocity over tau; 0 of loads on masses."""
+    given = system if system.base_control == DISPLACEMENT else system.at_frequency(r)
+    base = given.contact_system.base
+    return sum(one.real for one in base.values()), sum(-n * one.imag for n, one in base.items())
+
+
 def _from_motion(structure: Structure, ds: xr.Dataset) -> Start:
     """The last state of a history, or that of a response at tau = 0, which is its last one, too."""
     axis = "time" if "time" in ds.dims else "tau"
@@ -76,7 +85,11 @@ def _from_motion(structure: Structure, ds: xr.Dataset) -> Start:
     last = ds.isel({axis: -1}).squeeze()
     n, contacts = structure.system.n, structure.spring.size
     x, v = _vector(np.atleast_1d(last["x"]), "start.x", n), _vector(np.atleast_1d(last["v"]), "start.v", n)
-    rate = float(ds["r"]) if axis == "tau" else 1.0  # a response has velocities over tau
+    rate = 1.0
+    if axis == "tau":  # a response has velocities over tau, and displacements in space
+        rate = float(ds["r"])
+        place, velocity = _base_at_start(structure.system, rate)
+        x, v = x - place, v - velocity
     f, sense = np.atleast_1d(last["friction"]).astype(float), np.atleast_1d(last["direction"])
     if f.shape != (contacts,):
         raise InputError("start", f"must have {contacts} contacts, as the system has; got {f.size}")

@@ -32,7 +32,11 @@ class Watched(NamedTuple):
 def structure_of(system: System, opens: bool = False) -> Structure:
     """Modes of a system; opens: contacts that open and piecewise linear springs may be there."""
     if not opens:
-        refuse_phases(system, "bound motions under records")
+        refuse_phases(
+            system, "bound motions under records",
+            "motions of contacts that open and of piecewise linear springs may move apart, so that no bound "
+            "holds at all times; follow both motions by history and compare them",
+        )  # fmt: skip
     refuse_modes(system, "compute motions under records")
     refuse_banks(system, "compute motions under records")
     system = in_general_form(system)

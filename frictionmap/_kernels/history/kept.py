@@ -245,7 +245,7 @@ def _keep_peaks(problem, row, motion, begin, end, kept):
 
     Parameters
     ----------
-    problem, row, motion, kept : see `motion.follow_record`; the state is that at the end
+    problem, row, motion, kept : see `motions_in_time.follow_record`; the state is that at the end
     begin, end : where the step begins in the interval, and its end in x after it
     """
     _end_step(problem, row, motion, end, kept)

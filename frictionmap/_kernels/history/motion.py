@@ -1,4 +1,7 @@
-"""The motion under a record, and after it."""
+"""The motion of the general engine under a record: its start, an interval or a part of one, its end.
+
+`motions_in_time` follows it from interval to interval.
+"""
 
 import math
 from typing import NamedTuple
@@ -6,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel
-from ..compiler.packed import packed
 from ..general.counts import COUNT_ROWS
 from ..general.crossings import NONE, value_at
 from ..general.follow import count_time, pass_event, prepare
@@ -20,7 +22,6 @@ from ..general.problem import (
     HALF,
     LOAD_TERMS,
     SIZE,
-    TURN,
     F,
     H,
     Motion,
@@ -32,23 +33,25 @@ from ..general.problem import (
     slide_velocity,
     velocity_row,
 )
-from ..general.record import clear_record
 from ..general.row import make_motion, make_row, put_part, set_channels, set_interval
 from ..general.series import advance, expand, factor_held
 from .asleep import is_asleep
+from .course import (
+    ASLEEP,
+    AT_LIMIT,
+    AWAKE,
+    BY_LAW,
+    MOST_EVENTS,
+    RESOLVED,
+    TOO_MANY_EVENTS,
+    UNDETERMINED,
+    parts_of,
+    slides_on_slowly,
+)
 from .held import Places, keep_places, make_places, note_places
 from .kept import begin_step, keep_ends, keep_present, keep_step, list_changes, store_state
 from .springs import begin_springs, follow_open, has_varying_spring, rest_tied, turn_open
 from .tables import Tables, has_tables, make_tables, pass_by_tables, set_tables
-
-#: What became of a motion.
-RESOLVED, RINGING, CREEPING, TOO_MANY_EVENTS, RECORD_TOO_SHORT, UNDETERMINED = 0, 1, 2, 3, 4, 5
-
-#: Events in an interval at most: more are chattering.
-_MOST_EVENTS = 2000
-
-#: A force within this share of its limit is at it.
-_AT_LIMIT = 1e-14
 
 #: Leading terms of a slide's velocity that may be zero at most: where the load begins as t^4.
 _MOST_ZEROS = 6
@@ -56,24 +59,15 @@ _MOST_ZEROS = 6
 #: A velocity at the start within this share of its terms is rest.
 _AT_REST = 1e-12
 
-#: Sense of a contact at the start that its law decides.
-BY_LAW = 9
-
-#: A slide is over for practical purposes below this speed, relative to displacements and the fastest rate.
-_CREEP = 1e-15
-
 #: Row of the scratch for the senses before an event.
 _SENSE = 7
-
-#: Places in `limits`: number of samples from a kept state to the next, 0: none; intervals after the record at
-#: most; whether to end when asleep; whether states at events are kept.
-EVERY, AFTER, TO_REST, LISTED = 0, 1, 2, 3
 
 
 class Memory(NamedTuple):
     """Memory of a motion."""
 
     row: Row
+    channels: np.ndarray  # `row.loads`: the channels in the present part of an interval
     motion: Motion
     tables: Tables
     box: np.ndarray  # (BOX_ROWS, N) scratch of `settle`
@@ -82,23 +76,13 @@ class Memory(NamedTuple):
     rests: np.ndarray  # (N,) bool: springs under varying normal loads that are at rest, see `springs`
 
 
-class Course(NamedTuple):
-    """A record in K - 1 intervals, and the one after it, which is repeated."""
-
-    pieces: np.ndarray  # (K, D, terms) polynomials of the channels over the interval
-    steps: np.ndarray  # (K,) lengths of the intervals
-    times: np.ndarray  # (K,) when they begin
-    jumps: np.ndarray  # (K,) bool: whether a channel jumps where the interval begins
-    ties: np.ndarray  # (N, N) bool: `Problem.ties` of springs under varying normal loads
-
-
 @entry
 def make_memory(problem, still, watched, terms, lengths):
     """Allocate it; see `tables.make_tables`."""
     tables = make_tables(problem, still, watched, terms, lengths if has_tables(problem) else 0)
-    contacts = problem.spring.size
+    contacts, row = problem.spring.size, make_row(problem)
     return Memory(
-        make_row(problem), make_motion(problem), tables, np.zeros((BOX_ROWS, contacts)),
+        row, row.loads, make_motion(problem), tables, np.zeros((BOX_ROWS, contacts)),
         np.zeros((COUNT_ROWS, contacts)), make_places(problem), np.zeros(contacts, np.bool_),
     )  # fmt: skip
 
@@ -112,12 +96,12 @@ def _touches(problem, friction, motion, event, end):
     x, j, side = event
     rate = -watched_slope(problem, friction, motion, x, j, side)
     size = friction.static[j] * value_at(motion.series, normal_row(problem, j), x)
-    if rate * (end - x) > _AT_LIMIT * size:
+    if rate * (end - x) > AT_LIMIT * size:
         return False
     for at in (0.5 * (x + end), end):
         force = value_at(motion.series, force_row(problem, j), at)
         limit = friction.static[j] * value_at(motion.series, normal_row(problem, j), at)
-        if side * force - limit > _AT_LIMIT * abs(limit):
+        if side * force - limit > AT_LIMIT * abs(limit):
             return False
     return True
 
@@ -166,8 +150,8 @@ def _cross(problem, friction, memory, ties, kept, jumped, listed):
 
     Parameters
     ----------
-    problem, friction, memory, kept : see `follow_record`; the polynomials are in `row.loads`
-    ties : see `Course`
+    problem, friction, memory, kept : see `motions_in_time.follow_record`; the polynomials are in `row.loads`
+    ties : see `course.Course`
     jumped : whether the load, or what a contact does, has changed at the beginning
     listed : whether the states at events are kept
 
@@ -181,7 +165,7 @@ def _cross(problem, friction, memory, ties, kept, jumped, listed):
     motion.clock[0] = math.nan
     before = motion.scratch[_SENSE]
     show, opens = listed and jumped, has_varying_spring(problem)
-    for _ in range(_MOST_EVENTS):
+    for _ in range(MOST_EVENTS):
         rest = 1.0 - x
         expand(problem, row, friction, x * h, 0 if x == 0.0 else -1, motion, True)
         _skip_zeros(problem, motion)
@@ -223,8 +207,14 @@ def _cross(problem, friction, memory, ties, kept, jumped, listed):
 
 
 @kernel
-def _set_length(problem, memory, h):
-    """Change the length of intervals, with the velocities that are measured in it."""
+def rate_of(memory, problem, friction):
+    """Bound on the rate of the fastest part of the motion."""
+    return rate_under(problem, 0, friction)
+
+
+@kernel
+def set_length(memory, problem, h):
+    """Change the length of parts of intervals, with the velocities that are measured in it."""
     row, motion = memory.row, memory.motion
     before = row.numbers[H]
     if h != before:
@@ -283,17 +273,15 @@ def _sense_at_start(problem, row, motion, j):
 
 
 @kernel
-def _begin(problem, friction, memory, course, start, senses):
+def begin(memory, problem, friction, course, start, senses):
     """Set the state and the pattern at the start; False if the contacts do not determine their forces.
 
-    Parameters
-    ----------
-    problem, friction, memory, course, start, senses : see `follow_record`
+    memory, problem, friction, course, start, senses : see `motions_in_time.follow_record`
     """
     row, motion = memory.row, memory.motion
     row.intervals[HALF], row.intervals[LOAD_TERMS] = 1, course.pieces.shape[2]
     row.loads[:] = 0.0
-    parts = _parts_of(problem, friction, course.steps[0])
+    parts = parts_of(rate_under(problem, 0, friction), course.steps[0])
     set_interval(problem, 0, row, course.steps[0] / parts)
     set_tables(memory.tables, row.numbers[H])
     put_part(row.loads, course.pieces[0], 0.0, parts)
@@ -318,137 +306,66 @@ def _begin(problem, friction, memory, course, start, senses):
 
 
 @kernel
-def _parts_of(problem, friction, step):
-    """Equal parts of an interval in which series are exact to rounding."""
-    return max(1, int(math.ceil(rate_under(problem, 0, friction) * step / TURN)))
-
-
-@kernel
-def _follow_interval(problem, friction, memory, course, kept, done, listed):
-    """Follow the motion through the next interval.
-
-    Parameters
-    ----------
-    problem, friction, memory, course, kept : see `follow_record`
-    done : intervals followed before
-    listed : whether the states at events are kept
-
-    Returns
-    -------
-    int : RESOLVED, TOO_MANY_EVENTS or UNDETERMINED
-    """
-    k = min(done, course.steps.size - 1)
-    jump = course.jumps[k] and done == k and done > 0
-    step = course.steps[k]
-    parts = _parts_of(problem, friction, step)
-    _set_length(problem, memory, step / parts)
-    tables = memory.tables
-    begin = course.times[k] + (done - k) * step
-    for part in range(parts):
-        kept.clock[0] = begin + step * (part / parts)
-        put_part(memory.row.loads, course.pieces[k], done - k + part / parts, parts)
-        jumped = jump and part == 0
-        row, motion, counts = memory.row, memory.motion, memory.counts
-        changed = jumped
-        if part == 0 and has_varying_spring(problem):
-            changed |= begin_springs(
-                problem, row, friction, motion, kept, motion.scratch[_SENSE], course.ties, memory.rests
-            )
-        if jumped and not _jump(problem, friction, memory, course.ties, kept):
-            return UNDETERMINED
-        by_tables = not jumped and tables.known.size > 0
-        if by_tables and pass_by_tables(problem, row, friction, motion, counts, kept, tables):
-            keep_places(problem, row, motion, 1.0, kept.clock[0] + row.numbers[H], memory.places)
-            continue
-        code = _cross(problem, friction, memory, course.ties, kept, changed, listed)
-        if code != RESOLVED:
-            return code
-    return RESOLVED
-
-
-@kernel
-def _creeps(problem, row, motion):
-    """Whether a contact slides so slowly that rounding error hides it."""
-    slides = False
-    for j in range(motion.sense.size):
-        slides = slides or motion.sense[j] != 0
-    if not slides:
-        return False
-    speed, size = 0.0, row.numbers[SIZE]
-    for m in range(problem.squares.size):
-        speed = max(speed, abs(motion.state[P, m]))
-        size = max(size, abs(motion.state[Q, m]))
-    return speed <= _CREEP * size
-
-
-@kernel
-def _follow(problem, friction, memory, course, kept, bed, limits):
-    """Follow the motion from its start.
-
-    Parameters
-    ----------
-    problem, friction, memory, course, kept, bed, limits : see `follow_record`
-
-    Returns
-    -------
-    (status, done, asleep) : see `follow_record`
-    """
-    last, to_rest = course.steps.size - 1, limits[TO_REST] != 0
+def keep_start(memory, problem, friction, kept, shown):
+    """Keep the forces where the motion begins, and the state there if it is `shown`."""
     row, motion = memory.row, memory.motion
-    done, asleep = 0, -1
-    while True:
-        k = min(done, last)
-        if k == last and asleep < 0 and is_asleep(row, friction, motion, bed):
-            asleep = done
-        if asleep >= 0 and to_rest:
-            return RESOLVED, done, asleep
-        if done >= last + limits[AFTER]:
-            return (RINGING if to_rest else RESOLVED), done, asleep
-        code = _follow_interval(problem, friction, memory, course, kept, done, limits[LISTED] != 0)
-        if code != RESOLVED:
-            return code, done, asleep
-        done += 1
-        if limits[EVERY] > 0 and (done % limits[EVERY] == 0 or done == last):
-            store_state(problem, row, motion, 1.0, kept)
-        if k == last and to_rest and _creeps(problem, row, motion):
-            return CREEPING, done, asleep
-
-
-@entry
-def follow_record(problem, friction, memory, course, start, senses, kept, bed, limits):
-    """Follow the motion under a record and after it.
-
-    Parameters
-    ----------
-    problem : Problem with r = [1.0] and no harmonics; its first rate bounds that of free motion
-    friction : Friction
-    memory : Memory; its counters and the state are those at the end
-    course : Course
-    start : (3, ...) modes, their velocities q', forces of springs
-    senses : (N,) of a motion that goes on; else BY_LAW
-    kept : Kept
-    bed : Bed
-    limits : (4,) int, see EVERY
-
-    Returns
-    -------
-    (status, done, asleep) : see RESOLVED; intervals followed; after how many of them no contact moves again,
-        -1 if this is not proved
-    """
-    problem, friction, memory = packed(problem), packed(friction), packed(memory)
-    course, kept, bed = packed(course), packed(kept), packed(bed)
-    row, motion = memory.row, memory.motion
-    clear_record(kept.record)
-    if not _begin(problem, friction, memory, course, start, senses):
-        return UNDETERMINED, 0, -1
     for j in range(motion.sense.size):
         kept.forces[j] = motion.state[F, j]
-        if motion.sense[j] != 0:
-            kept.first[0] = course.times[0]
-    if limits[EVERY] > 0:
+    if shown:
         expand(problem, row, friction, 0.0, 0, motion, True)
         keep_present(problem, row, motion, 0.0, 0.0, kept)
-    status, done, asleep = _follow(problem, friction, memory, course, kept, bed, limits)
+
+
+@kernel
+def keep_sample(memory, problem, kept):
+    """Keep the state at the end of an interval."""
+    store_state(problem, memory.row, memory.motion, 1.0, kept)
+
+
+@kernel
+def follow_part(memory, problem, friction, course, kept, part, jump, listed):
+    """Follow the motion through an equal part of an interval; a code of `_cross`.
+
+    Parameters
+    ----------
+    memory, problem, friction, course, kept : see `motions_in_time.follow_record`
+    part : number of the part; its polynomials are in `memory.channels`
+    jump : whether the load jumps where the interval begins
+    listed : whether the states at events are kept
+    """
+    row, motion, counts, tables = memory.row, memory.motion, memory.counts, memory.tables
+    jumped = jump and part == 0
+    changed = jumped
+    if part == 0 and has_varying_spring(problem):
+        changed |= begin_springs(
+            problem, row, friction, motion, kept, motion.scratch[_SENSE], course.ties, memory.rests
+        )
+    if jumped and not _jump(problem, friction, memory, course.ties, kept):
+        return UNDETERMINED
+    by_tables = not jumped and tables.known.size > 0
+    if by_tables and pass_by_tables(problem, row, friction, motion, counts, kept, tables):
+        keep_places(problem, row, motion, 1.0, kept.clock[0] + row.numbers[H], memory.places)
+        return RESOLVED
+    return _cross(problem, friction, memory, course.ties, kept, changed, listed)
+
+
+@kernel
+def sleep_of(memory, problem, friction, bed):
+    """Whether no contact ever moves again under no load: AWAKE or ASLEEP."""
+    return ASLEEP if is_asleep(memory.row, friction, memory.motion, bed) else AWAKE
+
+
+@kernel
+def creeps(memory, problem):
+    """Whether a contact slides so slowly that rounding error hides it."""
+    motion = memory.motion
+    return slides_on_slowly(
+        motion.sense, motion.state[Q], motion.state[P], problem.squares.size, memory.row.numbers[SIZE]
+    )
+
+
+@kernel
+def end(memory, problem, kept):
+    """Leave the velocities q' in the state; the forces at the end are kept already."""
     for m in range(problem.squares.size):
-        motion.state[P, m] /= row.numbers[H]
-    return status, done, asleep
+        memory.motion.state[P, m] /= memory.row.numbers[H]

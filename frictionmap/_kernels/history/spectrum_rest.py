@@ -3,7 +3,7 @@
 import math
 
 from ..compiler import kernel
-from .motion import CREEPING, RESOLVED, RINGING
+from .course import CREEPING, RESOLVED, RINGING
 from .spectrum_lanes import (
     ACC,
     ASLEEP,

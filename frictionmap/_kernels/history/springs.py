@@ -119,7 +119,7 @@ def rest_tied(problem, row, friction, motion, ties, rests, order):
 
     Parameters
     ----------
-    problem, row, friction, motion, ties : see `motion.follow_record`
+    problem, row, friction, motion, ties : see `motions_in_time.follow_record`
     rests : (N,) bool: whether they are at rest
     order : as of `rest_springs`; 0 where an interval begins, at which limits begin to change
     """
@@ -191,7 +191,8 @@ def begin_springs(problem, row, friction, motion, kept, before, ties, rests):
 
     Parameters
     ----------
-    problem, row, friction, motion, kept : see `motion.follow_record`; the polynomials are in `row.loads`
+    problem, row, friction, motion, kept : see `motions_in_time.follow_record`; the polynomials are in
+        `row.loads`
     before : (N,) scratch
     ties, rests : see `rest_tied`
 

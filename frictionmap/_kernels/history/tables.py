@@ -365,8 +365,8 @@ def pass_by_tables(problem, row, friction, motion, counts, kept, tables):
 
     Parameters
     ----------
-    problem, row, friction, motion, counts, kept : see `motion.follow_record`; the terms of the load over the
-        interval are in `row.loads`
+    problem, row, friction, motion, counts, kept : see `motions_in_time.follow_record`; the terms of the load
+        over the interval are in `row.loads`
     tables : Tables
 
     Returns

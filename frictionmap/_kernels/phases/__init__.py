@@ -22,6 +22,6 @@ cycles        the steady motion of one cell without a load, on belts: its period
 fill          cells of a map, and the steps of one motion, with and without a load
 kept          what is kept of a motion under a record: peaks, works, slides, events, samples
 rest          when a motion without a load has ended; contacts held in place
-under_record  the motion under a record, and after it
+under_record  the motion under a record: its start, a part of an interval, its end
 ============  ====================================================================================
 """

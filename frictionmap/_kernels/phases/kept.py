@@ -47,13 +47,19 @@ _PUSHED = 7
 
 
 class Memory(NamedTuple):
-    """Memory of a motion under a record of D channels."""
+    """Memory of a motion under a record of D channels.
+
+    Where the place of the base is a channel, it is the last one of the modes, too: nothing acts on it, and
+    what the ground presses and stretches depends on it.
+    """
 
     motion: Motion
     row: Row  # of r = 1; its arrays are those of the present part of an interval, its h is not used
     belt: np.ndarray  # (N,) velocities of the walls
     push: np.ndarray  # (m, D) loads on the modes
     walls: np.ndarray  # (D,) 1 of the channel that is the place of the base
+    free: np.ndarray  # (1,) int: modes of the structure; the next one, if there is one, is the base
+    ground: np.ndarray  # (0 or 1, 2 m + 2 N + S + D) force of the ground, over which the base moves, by units
     rate: np.ndarray  # (1,) bound on the rate of motion in any phase
     length: np.ndarray  # (1,) of the present part
     terms: np.ndarray  # (1,) int: terms of a channel
@@ -82,6 +88,18 @@ def put_channels(memory, x):
             for i in range(modes):
                 drive[k, i] += square * memory.push[i, d] * value
             drive[k, modes] += memory.walls[d] * value
+    if memory.free[0] < modes:
+        _put_base(memory, terms)
+
+
+@kernel
+def _put_base(memory, terms):
+    """Set the place of the base, its velocity, and the series of its acceleration."""
+    base, motion = memory.free[0], memory.motion
+    drive, place = motion.drive, memory.push.shape[0]
+    motion.q[base], motion.p[base] = drive[0, place], drive[1, place]
+    for k in range(2, terms):
+        drive[k - 2, base] = k * (k - 1.0) * drive[k, place]
 
 
 @kernel
@@ -238,6 +256,19 @@ def _keep_walls(problem, memory, j, end, kept):
 
 
 @kernel
+def _keep_ground(problem, cell, memory, end, kept):
+    """Add the work of the ground on what it presses and stretches: it moves back where the base moves on."""
+    value = memory.scratch[VALUE]
+    for k in range(WIDTH):
+        value[k] = 0.0
+    _fill_forces(problem, cell, memory, memory.ground, 0)
+    for d in range(memory.walls.size):
+        if memory.walls[d] != 0.0:
+            part = integral_by_slope(memory.present[d], value, end, memory.terms[0])
+            kept.works[OF_BASE] += memory.walls[d] * part
+
+
+@kernel
 def _keep_load(problem, memory, end, kept):
     """Add the work of the load: [L P.x] less the integral of L' P.x."""
     modes, moves = problem.squares.size, memory.motion.terms.moves
@@ -259,6 +290,8 @@ def keep_step(problem, cell, memory, begin, end, kept):
     motion = memory.motion
     _keep_peaks(problem, cell, memory, begin, end, kept)
     _keep_load(problem, memory, end, kept)
+    if memory.ground.shape[0] > 0:
+        _keep_ground(problem, cell, memory, end, kept)
     for j in range(problem.law.size):
         if motion.open[j] == 0 and problem.law[j] != SMOOTH:
             if motion.sense[j] != 0:

@@ -11,12 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import kernel
+from ..history.course import ASLEEP, AWAKE, ELSEWHERE
 from .kept import sense_of
 from .problem import RIGID, SMOOTH
 from .series import dot, is_held, solve_held
-
-#: Whether a motion has ended: not yet, for all contacts, and not in the phase of the bed.
-AWAKE, ASLEEP, ELSEWHERE = 0, 1, 2
 
 
 class Bed(NamedTuple):
@@ -42,7 +40,7 @@ def _product(memory, rows, at):
 
 
 @kernel
-def sleep_of(problem, memory, bed):
+def sleep_of(memory, problem, cell, bed):
     """Whether no contact ever moves, opens or closes again, and no spring passes a knot: see AWAKE."""
     motion, contacts = memory.motion, problem.law.size
     for j in range(contacts):

@@ -1,26 +1,24 @@
-"""The motion under a record, whose channels are polynomials over every interval, and after it."""
+"""The motion of phases under a record: its start, a part of an interval, its end.
 
-import math
+The channels of the record are polynomials over every interval; `motions_in_time` follows the motion from
+interval to interval.
+"""
 
-from ..compiler import entry, kernel
-from ..compiler.packed import packed
+from ..compiler import kernel
 from ..general.crossings import NONE, first_zero, slope_at, value_at
-from ..general.problem import TERMS, TURN
-from ..general.record import clear_record
+from ..general.problem import TERMS
 from ..general.row import put_part
-from ..history.kept import BEGIN, END
-from ..history.motion import (
-    AFTER,
+from ..history.course import (
+    AT_LIMIT,
     BY_LAW,
-    CREEPING,
-    EVERY,
-    LISTED,
+    MOST_EVENTS,
     RESOLVED,
-    RINGING,
-    TO_REST,
     TOO_MANY_EVENTS,
     UNDETERMINED,
+    parts_of,
+    slides_on_slowly,
 )
+from ..history.kept import BEGIN, END
 from .change import count_time, wake_tied
 from .follow import INSTANT, MOST_IMMEDIATE, pass_event
 from .kept import (
@@ -35,7 +33,7 @@ from .kept import (
 )
 from .pattern import begin_pattern, find_piece, is_at_rest, rest_tied, settle
 from .problem import NORMAL, RIGID, SMOOTH, UP, F, watch_row
-from .rest import ASLEEP, ELSEWHERE, keep_places, note_places, sleep_of
+from .rest import keep_places, note_places
 from .series import (
     advance,
     begin_terms,
@@ -47,23 +45,8 @@ from .series import (
 )
 from .watch import clear_leads, is_watched, put_knot, put_watched
 
-#: The phase at the end has no bed yet: the caller makes it and goes on.
-NEEDS_BED = -1
-
-#: Places in `state`: intervals followed, -1 before the start; after how many of them the motion has ended.
-DONE, SINCE = 0, 1
-
-#: Events in a part of an interval at most: more are chattering.
-_MOST_EVENTS = 2000
-
 #: Leading terms of a watched quantity that may be zero where a step begins, as at rest under a load t^4.
 _MOST_ZEROS = 8
-
-#: A force within this share of its limit is at it.
-_AT_LIMIT = 1e-14
-
-#: A slide is over for practical purposes below this speed, relative to displacements.
-_CREEP = 1e-15
 
 
 @kernel
@@ -97,7 +80,7 @@ def _touches(problem, cell, motion, x, j, which, rest):
     """
     at = watch_row(problem)
     put_watched(problem, cell, motion, j, which)
-    size = _AT_LIMIT * abs(value_at(motion.series, F * problem.law.size + j, x))
+    size = AT_LIMIT * abs(value_at(motion.series, F * problem.law.size + j, x))
     if -slope_at(motion.series, at, x) * (rest - x) > size:
         return False
     middle, end = value_at(motion.series, at, 0.5 * (x + rest)), value_at(motion.series, at, rest)
@@ -160,7 +143,7 @@ def _pass(problem, cell, memory, x, who, what, kept):
 
     Parameters
     ----------
-    problem, cell, memory, kept : see `follow_record`
+    problem, cell, memory, kept : see `motions_in_time.follow_record`
     x, who, what : place in the part, and the event, see `watch.first_event`
     """
     motion = memory.motion
@@ -182,7 +165,7 @@ def _cross(problem, cell, memory, kept, jumped, listed):
 
     Parameters
     ----------
-    problem, cell, memory, kept : see `follow_record`; the channels are there
+    problem, cell, memory, kept : see `motions_in_time.follow_record`; the channels are there
     jumped : whether the load has changed at the beginning
     listed : whether the states at events are kept
 
@@ -192,7 +175,7 @@ def _cross(problem, cell, memory, kept, jumped, listed):
     """
     motion, units, x, immediate = memory.motion, kept.units[BEGIN], 0.0, 0
     show = listed and jumped
-    for _ in range(_MOST_EVENTS):
+    for _ in range(MOST_EVENTS):
         put_channels(memory, x)
         begin_terms(problem, memory.row, cell, motion, TERMS)
         observe(problem, memory.row, motion, False)
@@ -216,8 +199,14 @@ def _cross(problem, cell, memory, kept, jumped, listed):
 
 
 @kernel
-def _set_length(problem, memory, length):
-    """Change the length of parts, with what is measured in it."""
+def rate_of(memory, problem, cell):
+    """Bound on the rate of the fastest part of the motion in any phase."""
+    return memory.rate[0]
+
+
+@kernel
+def set_length(memory, problem, length):
+    """Change the length of parts of intervals, with what is measured in it."""
     before, row, motion = memory.length[0], memory.row, memory.motion
     if length == before:
         return
@@ -226,12 +215,13 @@ def _set_length(problem, memory, length):
         row.stiffness[i] = square * problem.squares[i]
         for other in range(problem.squares.size):
             row.damping[i, other] = length * problem.damping[i, other]
+        motion.p[i] *= length / before
+    for i in range(memory.free[0]):
         for j in range(problem.law.size):
             row.reaction[j, i] = square * problem.chi[j, i]
             row.push[j, i] = square * problem.normal[j, i]
         for s in range(problem.along.shape[0]):
             row.pull[s, i] = square * problem.along[s, i]
-        motion.p[i] *= length / before
     for j in range(problem.law.size):
         row.belt[j] = length * memory.belt[j]
     factor_held(problem, row, motion)
@@ -262,36 +252,20 @@ def _jump(problem, cell, memory, kept):
 
 
 @kernel
-def _follow_interval(problem, cell, memory, course, kept, done, listed):
-    """Follow the motion through the next interval; a code of `_cross`.
+def follow_part(memory, problem, cell, course, kept, part, jump, listed):
+    """Follow the motion through an equal part of an interval; a code of `_cross`.
 
     Parameters
     ----------
-    problem, cell, memory, course, kept : see `follow_record`
-    done : intervals followed before
+    memory, problem, cell, course, kept : see `motions_in_time.follow_record`
+    part : number of the part; its polynomials are in `memory.channels`
+    jump : whether the load jumps where the interval begins
     listed : whether the states at events are kept
     """
-    k = min(done, course.steps.size - 1)
-    jump = course.jumps[k] and done == k and done > 0
-    step = course.steps[k]
-    begin, parts = course.times[k] + (done - k) * step, _parts_of(memory, step)
-    _set_length(problem, memory, step / parts)
-    for part in range(parts):
-        kept.clock[0] = begin + step * (part / parts)
-        put_part(memory.channels, course.pieces[k], done - k + part / parts, parts)
-        jumped = jump and part == 0
-        if jumped and not _jump(problem, cell, memory, kept):
-            return UNDETERMINED
-        code = _cross(problem, cell, memory, kept, jumped, listed)
-        if code != RESOLVED:
-            return code
-    return RESOLVED
-
-
-@kernel
-def _parts_of(memory, step):
-    """Equal parts of an interval in which series are exact to rounding."""
-    return max(1, int(math.ceil(memory.rate[0] * step / TURN)))
+    jumped = jump and part == 0
+    if jumped and not _jump(problem, cell, memory, kept):
+        return UNDETERMINED
+    return _cross(problem, cell, memory, kept, jumped, listed)
 
 
 @kernel
@@ -315,19 +289,16 @@ def _go_on(problem, cell, memory, senses):
 
 
 @kernel
-def _begin(problem, cell, memory, course, start, senses, kept):
+def begin(memory, problem, cell, course, start, senses):
     """Set the state and the pattern at the start; False if the contacts do not determine their forces.
 
-    Parameters
-    ----------
-    problem, cell, memory, course, start, senses, kept : see `follow_record`
+    memory, problem, cell, course, start, senses : see `motions_in_time.follow_record`
     """
     motion, row = memory.motion, memory.row
-    parts = _parts_of(memory, course.steps[0])
-    _set_length(problem, memory, course.steps[0] / parts)
+    parts = parts_of(memory.rate[0], course.steps[0])
+    set_length(memory, problem, course.steps[0] / parts)
     put_part(memory.channels, course.pieces[0], 0.0, parts)
-    kept.clock[0] = course.times[0]
-    for i in range(problem.squares.size):
+    for i in range(memory.free[0]):
         motion.q[i], motion.p[i] = start[0, i], start[1, i] * memory.length[0]
     for j in range(problem.law.size):
         motion.f[j] = start[2, j]
@@ -341,90 +312,36 @@ def _begin(problem, cell, memory, course, start, senses, kept):
     elif not _go_on(problem, cell, memory, senses):
         return False
     memory.before[:] = 1
-    note_places(problem, memory, 0.0, kept.clock[0])
-    for j in range(problem.law.size):
-        if motion.sense[j] != 0:
-            kept.first[0] = kept.clock[0]
+    note_places(problem, memory, 0.0, course.times[0])
     return True
 
 
 @kernel
-def _creeps(problem, memory):
-    """Whether a contact slides so slowly that rounding error hides it."""
-    motion, slides, speed, size = memory.motion, False, 0.0, memory.row.size
-    for j in range(problem.law.size):
-        slides = slides or motion.sense[j] != 0
-    for i in range(problem.squares.size):
-        speed, size = max(speed, abs(motion.p[i])), max(size, abs(motion.q[i]))
-    return slides and speed <= _CREEP * size
+def keep_start(memory, problem, cell, kept, shown):
+    """Keep the state where the motion begins, if it is `shown`."""
+    if shown:
+        begin_terms(problem, memory.row, cell, memory.motion, TERMS)
+        put_units(problem, cell, memory, kept.units[END], 0.0)
+        store_state(memory, kept.units[END], 0.0, kept)
 
 
 @kernel
-def _follow(problem, cell, memory, course, kept, bed, limits, state):
-    """Follow the motion from where it is; a status or NEEDS_BED.
-
-    Parameters
-    ----------
-    problem, cell, memory, course, kept, bed, limits, state : see `follow_record`
-    """
-    last, to_rest = course.steps.size - 1, limits[TO_REST] != 0
-    while True:
-        done = state[DONE]
-        k = min(done, last)
-        if k == last and state[SINCE] < 0:
-            sleep = sleep_of(problem, memory, bed)
-            if sleep == ELSEWHERE:
-                return NEEDS_BED
-            if sleep == ASLEEP:
-                state[SINCE] = done
-        if state[SINCE] >= 0 and to_rest:
-            return RESOLVED
-        if done >= last + limits[AFTER]:
-            return RINGING if to_rest else RESOLVED
-        code = _follow_interval(problem, cell, memory, course, kept, done, limits[LISTED] != 0)
-        if code != RESOLVED:
-            return code
-        state[DONE] = done + 1
-        if limits[EVERY] > 0 and ((done + 1) % limits[EVERY] == 0 or done + 1 == last):
-            store_state(memory, kept.units[END], 1.0, kept)
-        if k == last and to_rest and _creeps(problem, memory):
-            return CREEPING
+def keep_sample(memory, problem, kept):
+    """Keep the state at the end of an interval."""
+    store_state(memory, kept.units[END], 1.0, kept)
 
 
-@entry
-def follow_record(problem, cell, memory, course, start, senses, kept, bed, limits, state):
-    """Follow the motion under a record and after it, or go on with a further bed.
-
-    Parameters
-    ----------
-    problem : Problem
-    cell : Cell
-    memory : Memory; the state is that at the end
-    course : `history.motion.Course`
-    start : (3, ...) modes, their velocities q', forces of springs in contacts
-    senses : (N,) of a motion that goes on; else BY_LAW
-    kept : `history.kept.Kept`
-    bed : Bed of one phase
-    limits : (4,) int, see `history.motion`
-    state : (2,) int, see DONE
-
-    Returns
-    -------
-    int : status, see `history.motion`, or NEEDS_BED
-    """
-    problem, cell, memory = packed(problem), packed(cell), packed(memory)
-    course, kept, bed = packed(course), packed(kept), packed(bed)
+@kernel
+def creeps(memory, problem):
+    """Whether a contact slides so slowly that rounding error hides it."""
     motion = memory.motion
-    if state[DONE] < 0:
-        clear_record(kept.record)
-        state[DONE] = 0
-        if not _begin(problem, cell, memory, course, start, senses, kept):
-            return UNDETERMINED
-        if limits[EVERY] > 0:
-            begin_terms(problem, memory.row, cell, motion, TERMS)
-            put_units(problem, cell, memory, kept.units[END], 0.0)
-            store_state(memory, kept.units[END], 0.0, kept)
-    code = _follow(problem, cell, memory, course, kept, bed, limits, state)
+    return slides_on_slowly(motion.sense, motion.q, motion.p, memory.free[0], memory.row.size)
+
+
+@kernel
+def end(memory, problem, kept):
+    """Leave the velocities q' in the state, and keep the forces at the end."""
+    for i in range(problem.squares.size):
+        memory.motion.p[i] /= memory.length[0]
     for j in range(problem.law.size):
-        kept.forces[j] = kept.units[END, 2 * motion.q.size + j]
-    return code
+        kept.forces[j] = kept.units[END, 2 * problem.squares.size + j]

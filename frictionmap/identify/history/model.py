@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..._kernels.history.motion import RESOLVED
+from ..._kernels.history.course import RESOLVED
 from ..._kernels.history.tangents import (
     ACC,
     COLUMNS,

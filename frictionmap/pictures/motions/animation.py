@@ -12,7 +12,7 @@ from ... import checks
 from ...errors import InputError
 from ...files.reading import kind
 from ..options import FigureOptions, checked_options, used
-from ..palette import LINES
+from ..palette import LINES, OPEN_COLOUR, OPEN_LABEL
 from ..panels import Handle, legend_below, new_figure, title_figure
 from ..shapes import check_holds, to_draw
 from ..sizes import finish, points, sizes
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 #: Valid durations [s] and numbers of frames per second.
 _SECONDS, _RATES = (0.1, 600.0), (1.0, 120.0)
 
-#: Colours of the light of a stuck contact, and of a sliding one.
-_STUCK, _SLIDING = "#f2a900", "white"
+#: Colours of the light of a stuck contact, of a sliding one, and of an open one.
+_STUCK, _SLIDING, _OPEN = "#f2a900", "white", OPEN_COLOUR
 
 #: Colour of the cursor.
 _CURSOR = "#cc1f03"
@@ -52,7 +52,8 @@ class _Moving(NamedTuple):
             mark.set_xdata([x[frame]])
         for light, point, trace in self.contacts:
             light.set_xdata([trace.z[frame]])
-            light.set_markerfacecolor(_STUCK if trace.stuck[frame] else _SLIDING)
+            held = _STUCK if trace.stuck[frame] else _SLIDING
+            light.set_markerfacecolor(_OPEN if trace.opened[frame] else held)
             point.set_data([trace.z[frame]], [trace.friction[frame]])
         self.cursor.set_xdata([self.time[frame]] * 2)
 
@@ -62,8 +63,9 @@ def animate(
 ) -> "FuncAnimation":
     """Draw a steady state, or a motion under a record, as a moving picture.
 
-    Masses and contacts have a row each and move along it. The light of a contact is on while it is stuck. A
-    cursor runs through the motion in the contacts, or through the record, a point along the friction loop.
+    Masses and contacts have a row each and move along it. The light of a contact is on while it is stuck, and
+    blue while it is open. A cursor runs through the motion in the contacts, or through the record, a point
+    along the friction loop.
 
     Parameters
     ----------
@@ -223,8 +225,12 @@ def _draw_history(ax: Axes, ds: xr.Dataset, traces: Sequence[Trace]) -> Line2D:
 
 
 def _legend(traces: Sequence[Trace]) -> list[Handle]:
-    """Entries for the contacts and the two states of their lights."""
-    words = ("no slip", "slips") if all(trace.elastic for trace in traces) else ("stuck", "slides")
+    """Entries for the contacts and the states of their lights."""
+    words: tuple[str, ...] = ("stuck", "slides")
+    if all(trace.elastic for trace in traces):
+        words = ("no slip", "slips")
+    if any(trace.opened.any() for trace in traces):
+        words = (*words, OPEN_LABEL)
     lights = [
         Line2D(
             [],
@@ -236,7 +242,7 @@ def _legend(traces: Sequence[Trace]) -> list[Handle]:
             color=colour,
             label=word,
         )
-        for colour, word in zip((_STUCK, _SLIDING), words, strict=True)
+        for colour, word in zip((_STUCK, _SLIDING, _OPEN), words, strict=False)
     ]
     return [
         *lights,

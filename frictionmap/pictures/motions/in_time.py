@@ -10,12 +10,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...datasets.labels import SCALES
-from ...datasets.motion_labels import CELL, axes_of_motions, stuck_times
+from ...datasets.motion_labels import CELL, axes_of_motions, spans, stuck_times
 from ...errors import InputError
 from ...units.table import UNITS, handy_unit
 from ..drawing import with_options
 from ..options import FigureOptions
-from ..palette import CLASSES, LINES, STUCK
+from ..palette import CLASSES, LINES, OPEN_COLOUR, STUCK, Shade
 from ..panels import Handle, given_axes, legend_below, legend_under, new_figure, title_figure
 from ..shapes import check_holds, check_range, to_draw
 from .traces import CONTACT_COLOUR
@@ -26,6 +26,12 @@ if TYPE_CHECKING:
 #: Size of the panels over time, and of the one over friction or period [inch].
 _WIDE, _HIGH = 7.4, 2.0
 _WIDTH, _HEIGHT = 5.6, 4.0
+
+#: Times in which all contacts stick, and those in which one is open.
+_SHADES: tuple[Shade, Shade] = (
+    {"color": CLASSES[STUCK].colour, "alpha": 0.35, "linewidth": 0.0},
+    {"color": OPEN_COLOUR, "alpha": 0.55, "linewidth": 0.0},
+)
 
 #: Lines of single records, behind their median.
 _FAINT: dict[str, Any] = {"linewidth": 0.7, "alpha": 0.35}
@@ -96,10 +102,18 @@ def _by_rows(values: np.ndarray) -> np.ndarray:
     return values.reshape(-1, values.shape[-1])
 
 
-def _shade_stops(ax: Axes, time: np.ndarray, directions: np.ndarray) -> None:
-    """Shade the times in which all contacts stick."""
-    for begin, end in stuck_times(time, directions):
-        ax.axvspan(begin, end, color=CLASSES[STUCK].colour, alpha=0.35, linewidth=0.0)
+def _shaded_times(ds: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Beginnings and ends of the times in which all contacts stick, and of those in which one is open."""
+    time = ds["time"].values
+    stuck = stuck_times(time, _by_rows(ds["direction"].values))
+    return stuck, spans(time, (_by_rows(ds["open"].values) == 1).any(axis=0)) if "open" in ds else stuck[:0]
+
+
+def _shade(ax: Axes, ds: xr.Dataset) -> None:
+    """Shade the times in which all contacts stick, and those in which one is open."""
+    for times, look in zip(_shaded_times(ds), _SHADES, strict=True):
+        for begin, end in times:
+            ax.axvspan(begin, end, **look)
 
 
 def _draw_rows(ax: Axes, time: np.ndarray, values: np.ndarray, words: str) -> list[Handle]:
@@ -119,12 +133,12 @@ def time_words(ds: xr.Dataset) -> str:
 
 
 def draw_record(ax: Axes, ds: xr.Dataset) -> None:
-    """Draw the record of a motion over time, with the times shaded in which all contacts stick."""
+    """Draw the record of a motion over time, with its states shaded."""
     time = ds["time"].values
     ax.plot(time, ds["drive"].values, color="black", linewidth=0.8)
     ax.set_ylabel("record")
     ax.margins(x=0.0)
-    _shade_stops(ax, time, _by_rows(ds["direction"].values))
+    _shade(ax, ds)
 
 
 def _draw_traces(axes: "AxesArray", ds: xr.Dataset) -> list[Handle]:
@@ -142,8 +156,11 @@ def _draw_traces(axes: "AxesArray", ds: xr.Dataset) -> list[Handle]:
     axes[2].set_xlabel(time_words(ds))
     for ax in axes[1:]:
         ax.margins(x=0.0)
-        _shade_stops(ax, time, _by_rows(ds["direction"].values))
-    return [*handles, Patch(color=CLASSES[STUCK].colour, alpha=0.35, label="all contacts stick")]
+        _shade(ax, ds)
+    handles.append(Patch(**_SHADES[0], label="all contacts stick"))
+    if _shaded_times(ds)[1].size:
+        handles.append(Patch(**_SHADES[1], label="a contact is open"))
+    return handles
 
 
 def _is_single(ds: xr.Dataset) -> bool:
@@ -219,7 +236,7 @@ def plot_history(
 ) -> "AxesArray":
     """Draw a motion in time under its record; of several motions the largest displacement over friction.
 
-    Times in which all contacts stick are shaded.
+    Times in which all contacts stick are shaded, and those in which one is open.
 
     Parameters
     ----------

@@ -2,7 +2,10 @@
 
 import re
 
+import pytest
 from conftest import ROOT
+
+from frictionmap.units.table import UNITS
 
 GLOSSARY = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
 ROWS = [
@@ -32,3 +35,23 @@ def test_sections_that_are_cited_exist():
     cited = {number for row in ROWS for number in re.findall(r"(?<!T)\((\d+)\)", row[3])}
     assert cited
     assert cited <= set(headings)
+
+
+@pytest.mark.parametrize(
+    "word",
+    [
+        "macroslip", "microslip", "backbone", "masing", "engine order", "residual flexibility", "squeal",
+        "sticking fraction", "lift-off", "preload", "ring-down", "exceedance", "backlash", "isolator",
+        "bearing", "brace",
+        "blade", "earthquake", "hysteresis loop", "loss factor", "breakaway", "flutter", "storey drift",
+    ],
+)  # fmt: skip
+def test_words_of_the_trades_are_explained(word):
+    assert [row for row in ROWS if word in f"{row[0]} {row[2]}".lower()]
+
+
+def test_units_of_the_glossary_are_units():
+    """What stands in brackets in the meaning of a term is a unit, or a key."""
+    bracketed = {unit for row in ROWS for unit in re.findall(r"(?<!`)\[([^\]]+)\](?!\()", row[2])}
+    assert {"N", "mm", "s", "J"} <= bracketed
+    assert bracketed <= {*UNITS, "s", "J", "N/mm", "1/s", "m/s", "m/N", "Hz/s"}

@@ -1,11 +1,13 @@
 """The manual is built without a warning, names every command, key and function, and fetches nothing."""
 
 import html
+import json
 import os
 import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from conftest import ROOT
 from pages import HANG
@@ -87,11 +89,35 @@ def test_every_guide_can_be_found(manual):
     assert len(list(manual.glob("figures/plot_*.html"))) == len(list((ROOT / "docs/gallery").glob("*.py")))
 
 
-@pytest.mark.parametrize(
-    "word", ["squeal", "macroslip", "bearing", "isolator", "brace", "blade", "backlash", "earthquake"]
-)
+TRADES = ("squeal", "macroslip", "bearing", "isolator", "brace", "blade", "backlash", "earthquake")
+
+
+@pytest.mark.parametrize("word", TRADES)
 def test_first_page_has_the_words_of_the_trades(manual, word):
     assert word in text(manual, "index.html")
+
+
+@pytest.mark.parametrize("word", TRADES)
+def test_search_finds_the_words_of_the_trades(manual, word):
+    """The index that the search of the pages loads has them, on the page of the glossary as well."""
+    stemmer = pytest.importorskip("snowballstemmer").stemmer("porter")
+    found = re.fullmatch(r"Search\.setIndex\((.*)\);?\s*", text(manual, "searchindex.js"), re.DOTALL)
+    index = json.loads(found[1])
+    pages = np.atleast_1d(index["terms"].get(stemmer.stemWord(word), []))
+    assert "glossary" in [index["docnames"][int(page)] for page in pages]
+
+
+#: What follows the heading, or the bold word, of a decision.
+DECISION = re.compile(
+    r"(?:^#+ [^\n]*\bdecision\b[^\n]*\n|\*\*Decision\.\*\*)(.*?)(?=^#|\Z)",
+    re.IGNORECASE | re.MULTILINE | re.DOTALL,
+)
+
+
+def test_every_guide_has_a_decision_with_numbers():
+    for path in (ROOT / "docs" / "guides").glob("*.md"):
+        decisions = DECISION.findall(path.read_text(encoding="utf-8"))
+        assert [words for words in decisions if re.search(r"\d", words)], path.name
 
 
 def test_nothing_is_fetched_from_elsewhere(manual):

@@ -23,6 +23,8 @@ BEFORE = {
         "response configs/fig-3-12.toml --r 0.5 --beta 0.2 --mu 1 -o motion.nc",
         "identify configs/rigs/free-decay.toml",
         "design configs/design/brace-damper.toml",
+        "history configs/motions/ring-down.toml",
+        "spectrum configs/motions/spectra.toml",
     ],
 }
 
@@ -30,6 +32,8 @@ BEFORE = {
 STANDS_FOR = {
     "design": {"CONFIG.toml": "configs/design/brace-damper.toml"},
     "identify": {"RIG.toml": "rig.toml"},
+    "history": {"CONFIG.toml": "configs/motions/ring-down.toml"},
+    "spectrum": {"CONFIG.toml": "configs/motions/spectra.toml"},
     "": {"CONFIG.toml": "map.toml", "FILE.nc": "map.nc", "OUT.zarr": "out.zarr"},
 }
 
@@ -111,4 +115,4 @@ def _outputs(path):
 
 
 #: Pages with the output of their own commands.
-OUTPUTS = {"choosing-friction.md"}
+OUTPUTS = {"choosing-friction.md", "first-map.md"}

@@ -11,7 +11,10 @@ CONFIGS = ROOT / "configs" / "motions"
 NAMED = "# configs/motions/"
 ALL = {path.name: blocks(path.read_text(encoding="utf-8")) for path in (ROOT / "docs/guides").glob("*.md")}
 #: Guides with the output of their code, beside those of motions in time.
-PRINTED = {"motions-in-time.md", "response-curves.md", "which-start.md"}
+PRINTED = {
+    "motions-in-time.md", "reading-a-map.md", "records.md", "response-curves.md", "several-contacts.md",
+    "units.md", "which-start.md",
+}  # fmt: skip
 PAGES = {
     name: found
     for name, found in sorted(ALL.items())

@@ -5,7 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from .. import regimes
-from .._kernels.general.fill import Cells, Grid, fill_rows
+from .._kernels.compiler.lending import Memories, lent
+from .._kernels.general.fill import Cells, Grid, fill_rows, make_row_memory
 from ..jobs import Job, Progress, Watch, run_counted
 from ..model.settings import Solver
 from ..model.system import System
@@ -93,10 +94,14 @@ def solve_cells(
     found.unique[:] = sure
     cancel = np.zeros(1, np.uint8)
     rows = range(0, mu.size * r.size, max(1, _IN_A_JOB // max(many, 1)))
-    jobs: list[Job] = [
-        (fill_rows, (row, min(row + rows.step, rows.stop), problem, grid, found, outputs, cancel))
-        for row in rows
-    ]
+    memories = Memories(lambda: lent(make_row_memory(problem, outputs)))
+    given = lent(problem), lent(grid), lent(found)
+
+    def fill(first: int) -> None:
+        with memories.one() as memory:
+            fill_rows(first, min(first + rows.step, rows.stop), *given, memory, cancel)
+
+    jobs: list[Job] = [(fill, (row,)) for row in rows]
     try:
         run_counted(jobs, threads, progress, watch)
     except BaseException:

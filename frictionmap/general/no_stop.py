@@ -3,10 +3,11 @@
 import numpy as np
 
 from .. import regimes
+from .._kernels.compiler.lending import Memories, lent, made
 from .._kernels.general.ends import Intervals
 from .._kernels.general.no_stop import fill_no_stop
 from .._kernels.general.problem import Problem
-from .._kernels.general.reach import Search
+from .._kernels.general.reach import Search, make_walk
 from ..jobs import Job, Watch, run_jobs
 from ..model.system import System
 from .closed_limits import closed_limits, has_closed_limits
@@ -134,7 +135,14 @@ def find_intervals(
         starts, _CYCLES, _TOLERANCE,
     )  # fmt: skip
     cancel = np.zeros(1, np.uint8)
-    jobs: list[Job] = [(fill_no_stop, (i, i + 1, problem, search, found, cancel)) for i in range(r.size)]
+    memories = Memories(lambda: lent(made(make_walk, problem, mu.size)))
+    given = lent(problem), lent(search), lent(found)
+
+    def fill(i: int) -> None:
+        with memories.one() as walk:
+            fill_no_stop(i, i + 1, *given, walk, cancel)
+
+    jobs: list[Job] = [(fill, (i,)) for i in range(r.size)]
     try:
         run_jobs(jobs, threads, lambda _: None, watch)
     except BaseException:

@@ -6,7 +6,10 @@ of the force that holds it in the steady state of the others (theory.md 11).
 
 import numpy as np
 
+from .._kernels.compiler.lending import lent, made
 from .._kernels.general.partial import fill_holding_force
+from .._kernels.general.series import Friction
+from .._kernels.general.steady import make_workspace
 from ..model.system import System
 from .boundaries import rest_states
 from .problem import general_of, problem_of
@@ -45,5 +48,10 @@ def holding_force(
     problem, modal = problem_of(system, np.array([r]))
     state = rest_states(system, modal, problem.r)[0]
     out = np.full(values.size, np.nan)
-    fill_holding_force(problem, 0, contact, lines, values, state, _CYCLES, _TOLERANCE, out)
+    workspace = made(make_workspace, problem, np.empty((0, problem.squares.size)), 0)
+    friction = Friction(np.empty(len(lines)), np.empty(len(lines)))
+    fill_holding_force(
+        lent(problem), 0, contact, lines, values, state, (_CYCLES, _TOLERANCE), lent(workspace),
+        lent(friction), out,
+    )  # fmt: skip
     return out

@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._kernels.general.problem import Problem
+from .._kernels.compiler.lending import lent, made
+from .._kernels.general.problem import H, Problem
 from .._kernels.general.record import Record
 from .._kernels.general.series import Friction
-from .._kernels.general.steady import Steady, one_steady_state
+from .._kernels.general.steady import Steady, make_workspace, one_steady_state
 
 #: Steps that are kept at first.
 _FIRST = 64
@@ -36,15 +37,17 @@ def recorded_state(
     problem, i, friction, masses : see `one_steady_state`
     start : initial state, see `from_rest`
     limits : periods followed at most, and tolerance
-    most : steps for which there is room at first
+    most : steps for which there is room at first; 0: none are kept
     settled : see `one_steady_state`
     """
     cycles, tolerance = limits
     while True:
-        found, halves, multiplier, counts, record, h = one_steady_state(
-            problem, i, friction, start, float(cycles), tolerance, masses, most, settled
+        workspace = made(make_workspace, problem, masses, most)
+        found, halves, multiplier = one_steady_state(
+            lent(problem), i, lent(friction), start, float(cycles), tolerance, lent(workspace), settled
         )
-        steps = int(record.count[0])
-        if steps <= most:
+        record, steps = workspace.record, int(workspace.record.count[0])
+        if steps <= most or most == 0:
+            counts, h = workspace.memory.counts, float(workspace.row.numbers[H])
             return Recorded(found, halves, multiplier, counts, record, h, steps)
         most = 4 * steps

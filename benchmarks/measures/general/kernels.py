@@ -7,9 +7,10 @@ import numpy as np
 
 import frictionmap as fm
 from frictionmap import regimes
+from frictionmap._kernels.compiler.lending import lent
 from frictionmap._kernels.compiler.packed import packed
 from frictionmap._kernels.general.counts import MOVED, STOPS
-from frictionmap._kernels.general.fill import Cells, Grid, fill_rows
+from frictionmap._kernels.general.fill import Cells, Grid, fill_rows, make_row_memory
 from frictionmap._kernels.general.record import NOTHING, RANGES
 from frictionmap._kernels.general.return_map import from_rest, steady_period
 from frictionmap._kernels.general.row import set_row
@@ -43,7 +44,9 @@ def map_row(system: fm.System, r: float, beta: np.ndarray) -> tuple[Callable[[],
     grid = Grid(beta[np.newaxis], kinetic, static, stuck_from, starts, False, _CYCLES, _TOLERANCE)
     cells = allocate((1, 1, beta.size), general_of(system).count, 0)
     no_masses, cancel = np.empty((0, modal.phi.shape[1])), np.zeros(1, np.uint8)
-    return lambda: fill_rows(0, 1, problem, grid, cells, no_masses, cancel), cells
+    memory = lent(make_row_memory(problem, no_masses))
+    given = lent(problem), lent(grid), lent(cells)
+    return lambda: fill_rows(0, 1, *given, memory, cancel), cells
 
 
 class Found(NamedTuple):

@@ -1,7 +1,7 @@
 """Compilation of kernels: the decorators, and what they rely on inside numba.
 
 Kernels import `kernel`, `inner_kernel`, `late_kernel`, `entry` and `by_class` from here, vectors from
-`vectors` and `packed` from `packed`.
+`vectors`, `packed` from `packed` and what Python makes for entries from `lending`.
 
 ==============  =====================================================================================
 module          what is in it
@@ -17,6 +17,7 @@ class_dispatch  (fast) functions whose body is chosen by the class of an argumen
 late            (fast) kernels that are compiled when they are called first
 linking         (fast) libraries of compiled kernels, linked by name or inlined
 packed          named tuples that kernels pass on by their address
+lending         named tuples that Python makes and lends to entries by their address
 cache           (fast) compiled kernels on disk, each with a key and a digest
 fast            the default: each kernel is compiled once, called by name, kept on disk
 decorators      the five decorators; chooses one of the three compilers above

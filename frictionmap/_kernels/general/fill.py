@@ -22,6 +22,7 @@ from ...regimes import (
     TOO_MANY_EVENTS,
 )
 from ..compiler import entry, kernel, late_kernel
+from ..compiler.lending import made
 from ..compiler.packed import packed
 from ..extrapolation import CELLS, reaches, weight
 from .counts import (
@@ -45,7 +46,17 @@ from .problem import padded, varies
 from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES
 from .return_map import copy_motion, copy_state, from_rest, steady_period
 from .series import Friction
-from .steady import AVERAGED, NO_REPEAT, REPEATS, begin_row, fit_row, is_unique, make_workspace, solve_from
+from .steady import (
+    AVERAGED,
+    NO_REPEAT,
+    REPEATS,
+    Workspace,
+    begin_row,
+    fit_row,
+    is_unique,
+    make_workspace,
+    solve_from,
+)
 
 #: A steady state with a larger multiplier may be one of a continuum: the result depends on the initial state.
 _ISOLATED = 1.0 - 1e-9
@@ -90,6 +101,14 @@ class Trail(NamedTuple):
     senses: np.ndarray  # (N,) the pattern of all of them
     beta: np.ndarray  # (CELLS,)
     count: np.ndarray  # (1,) int: how many there are
+
+
+class RowMemory(NamedTuple):
+    """The memory that rows are filled in."""
+
+    workspace: Workspace
+    trail: Trail
+    friction: Friction
 
 
 class Cells(NamedTuple):
@@ -368,16 +387,14 @@ def _solve_cell(problem, grid, m, i, b, friction, workspace, trail):
 
 
 @kernel
-def _fill_rows(first, last, problem, grid, out, workspace, trail, friction, cancel):
+def _fill_rows(first, last, problem, grid, out, memory, cancel):
     """Fill rows; see `fill_rows`.
 
     Parameters
     ----------
-    first, last, problem, grid, out, cancel : see `fill_rows`
-    workspace, trail, friction : Workspace, Trail, Friction; their content does not matter
+    first, last, problem, grid, out, memory, cancel : see `fill_rows`
     """
-    problem, grid, out, workspace = packed(problem), packed(grid), packed(out), packed(workspace)
-    trail, friction = packed(trail), packed(friction)
+    workspace, trail, friction = memory.workspace, memory.trail, memory.friction
     n_r = problem.r.size
     for index in range(first, last):
         m, i = index // n_r, index % n_r
@@ -403,20 +420,25 @@ def _fill_rows(first, last, problem, grid, out, workspace, trail, friction, canc
             )
 
 
+def make_row_memory(problem, masses):
+    """Allocate the memory of `fill_rows`; `masses` (n, m): see `make_workspace`."""
+    contacts = problem.spring.size
+    return RowMemory(
+        made(make_workspace, problem, masses, 0), made(make_trail, problem),
+        Friction(np.empty(contacts), np.empty(contacts)),
+    )  # fmt: skip
+
+
 @entry
-def fill_rows(first, last, problem, grid, out, masses, cancel):
+def fill_rows(first, last, problem, grid, out, memory, cancel):
     """Fill rows first..last-1 of the (mu, r) grid; stop soon after cancel[0] is set.
 
     Parameters
     ----------
     first, last : range of rows; no row depends on another
-    problem : Problem
-    grid : Grid
-    out : Cells, unresolved
-    masses : (n, m) displacement of the masses per mode, see `Record`; n = 0 where they are not asked for
+    problem, grid : Problem, Grid, lent
+    out : Cells, unresolved, lent
+    memory : RowMemory, lent; its content does not matter
     cancel : (1,) set by another thread to end the computation
     """
-    workspace, trail = make_workspace(problem, masses, 0), make_trail(problem)
-    contacts = problem.spring.size
-    friction = Friction(np.empty(contacts), np.empty(contacts))
-    _fill_rows(first, last, problem, grid, out, workspace, trail, friction, cancel)
+    _fill_rows(first, last, problem, grid, out, memory, cancel)

@@ -79,6 +79,24 @@ def make_motions(problem, count):
 
 
 @kernel
+def clear_motions(motions):
+    """Forget all motions."""
+    motions.window[0] = 0.0
+    for a in range(motions.beta.size):
+        motions.beta[a] = 0.0
+        motions.kind[a] = motions.linked[a] = motions.settled[a] = 0
+        for which in range(2):
+            motions.counts[a, which] = 0
+            for j in range(motions.senses.shape[1]):
+                motions.margins[a, which, j] = motions.rates[a, which, j] = 0.0
+        for j in range(motions.senses.shape[1]):
+            motions.senses[a, j] = 0
+        for part in range(3):
+            for i in range(motions.states.shape[2]):
+                motions.states[a, part, i] = motions.state_rates[a, part, i] = 0.0
+
+
+@kernel
 def _listed(motions, a, which):
     """Turns or stops of motion a that are listed: all, or none where there are too many."""
     count = motions.counts[a, which]

@@ -7,7 +7,6 @@ between two motions (`neighbours`).  A step of the motions is one of beta.
 import math
 
 from ..compiler import entry, kernel
-from ..compiler.packed import packed
 from .ends import (
     RESOLVED,
     change_at_larger_static_friction,
@@ -24,6 +23,7 @@ from .neighbours import (
     NOT_FOUND,
     SLIDES,
     TURNING,
+    clear_motions,
     copy_neighbour,
     doubt_between,
     keep_at_rest,
@@ -41,7 +41,6 @@ from .reach import (
     find_first_motion,
     find_motion,
     keep_unknown,
-    make_walk,
     margin,
 )
 from .steady import begin_row
@@ -98,6 +97,7 @@ def _begin(problem, i, search, found, walk):
     walk : Walk
     """
     motions = walk.motions
+    clear_motions(motions)
     known = search.known[i] == search.known[i]
     find_first_motion(problem, i, search, walk)
     if known and motions.kind[HERE] == SLIDES:  # a further interval, from between here and the known end on
@@ -248,10 +248,8 @@ def _fill(first, last, problem, search, found, walk, cancel):
 
     Parameters
     ----------
-    first, last, problem, search, found, cancel : see `fill_no_stop`
-    walk : Walk; its content does not matter
+    first, last, problem, search, found, walk, cancel : see `fill_no_stop`
     """
-    problem, search, found, walk = packed(problem), packed(search), packed(found), packed(walk)
     for i in range(first, last):
         if cancel[0] != 0:
             return
@@ -262,16 +260,15 @@ def _fill(first, last, problem, search, found, walk, cancel):
 
 
 @entry
-def fill_no_stop(first, last, problem, search, found, cancel):
+def fill_no_stop(first, last, problem, search, found, walk, cancel):
     """Fill the intervals of beta in which no contact stops, at the frequencies first..last-1.
 
     Parameters
     ----------
     first, last : range of r
-    problem : Problem
-    search : Search
-    found : Intervals, filled
+    problem, search : Problem, Search, lent
+    found : Intervals, filled, lent
+    walk : Walk, lent; its content does not matter
     cancel : (1,) set by another thread to end the computation
     """
-    walk = make_walk(problem, search.static.shape[0])
     _fill(first, last, problem, search, found, walk, cancel)

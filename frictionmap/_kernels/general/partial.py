@@ -2,16 +2,12 @@
 
 import math
 
-import numpy as np
-
 from ..compiler import entry, kernel
-from ..compiler.packed import packed
 from .creep import WITHOUT_LIMIT
 from .record import FORCES, HIGH, LOW, NOTHING
 from .return_map import from_rest
 from .row import set_row
-from .series import Friction
-from .steady import REPEATS, find, make_workspace, measure
+from .steady import REPEATS, find, measure
 
 
 @kernel
@@ -22,10 +18,9 @@ def _fill(problem, i, contact, lines, values, state, limits, workspace, friction
     ----------
     problem, i, contact, lines, values, state, out : see `fill_holding_force`
     limits : cycles, tolerance
-    workspace, friction : Workspace, Friction; their content does not matter
+    workspace, friction : see `fill_holding_force`
     """
     cycles, tolerance = limits
-    problem, workspace, friction = packed(problem), packed(workspace), packed(friction)
     row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     set_row(problem, i, row)
     near = False
@@ -47,21 +42,18 @@ def _fill(problem, i, contact, lines, values, state, limits, workspace, friction
 
 
 @entry
-def fill_holding_force(problem, i, contact, lines, values, state, cycles, tolerance, out):
+def fill_holding_force(problem, i, contact, lines, values, state, limits, workspace, friction, out):
     """Fill half the range of the force that holds one contact, for mu = 1.
 
     Parameters
     ----------
-    problem, i : Problem, index of r
+    problem, i : Problem, lent, index of r
     contact : contact that is held
     lines : (N, 2) friction of contact j is lines[j, 0] value + lines[j, 1]
     values : (n,) what the friction of the others is given by
     state : (2, m) modes and their velocities q' at tau = 0
-    cycles, tolerance : see `steady.find`
+    limits : cycles, tolerance, see `steady.find`
+    workspace, friction : Workspace, Friction, lent; their content does not matter
     out : (n,) filled; NaN where no steady state was found
     """
-    contacts = lines.shape[0]
-    workspace = make_workspace(problem, np.empty((0, problem.squares.size)), 0)
-    friction = Friction(np.empty(contacts), np.empty(contacts))
-    limits = cycles, tolerance
     _fill(problem, i, contact, lines, values, state, limits, workspace, friction, out)

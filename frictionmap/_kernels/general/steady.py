@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiler import entry, kernel, late_kernel
-from ..compiler.packed import packed
 from ..long_periods import WINDOW, enough_cycles, first_search, next_search
 from .approach import STABLE, STABLE_PRECISION, try_return
 from .course import (
@@ -51,7 +50,7 @@ from .places import (
     settle_places,
     stop_contacts,
 )
-from .problem import H, Motion, Row, is_free
+from .problem import Motion, Row, is_free
 from .record import NOTHING, RANGES, STEPS, Record, clear_record, join_slips, keep_drift, make_record, mirror
 from .recurrence import (
     Ring,
@@ -534,7 +533,6 @@ def _one(problem, i, friction, state, limits, workspace, settled):
     -------
     Steady, half periods, multiplier
     """
-    problem, friction, workspace = packed(problem), packed(friction), packed(workspace)
     row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
     cycles, tolerance = limits
     begin_row(problem, i, workspace)
@@ -558,24 +556,21 @@ def _one(problem, i, friction, state, limits, workspace, settled):
 
 
 @entry
-def one_steady_state(problem, i, friction, state, cycles, tolerance, masses, most, settled):
+def one_steady_state(problem, i, friction, state, cycles, tolerance, workspace, settled):
     """Find the steady state of one cell, with the series of its steps.
 
     Parameters
     ----------
-    problem, i : Problem, index of r
-    friction : Friction
+    problem, i : Problem, lent, index of r
+    friction : Friction, lent
     state : see `from_rest`
     cycles, tolerance : see `find`
-    masses : (n, m) displacement of the masses per mode
-    most : number of steps that are kept
+    workspace : Workspace, lent; its content does not matter
     settled : whether the places of contacts at rest are wanted, else any at which they can rest
 
     Returns
     -------
     Steady, half periods that the steps cover (two if there is no steady state, WINDOW periods and one before
-    them if there are averages), multiplier, counts (see `follow`), Record, h
+    them if there are averages), multiplier
     """
-    workspace = make_workspace(problem, masses, most)
-    found, halves, multiplier = _one(problem, i, friction, state, (cycles, tolerance), workspace, settled)
-    return found, halves, multiplier, workspace.memory.counts, workspace.record, workspace.row.numbers[H]
+    return _one(problem, i, friction, state, (cycles, tolerance), workspace, settled)

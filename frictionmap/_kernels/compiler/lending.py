@@ -1,0 +1,143 @@
+"""Named tuples that Python makes and lends to entries by their address.
+
+An entry that takes a named tuple of a hundred arrays, or makes one, costs seconds to compile: numba writes
+code for each of some seven numbers per array, and for the references of every array.  `made` runs what
+allocates as a Python function, and `lent` puts a tuple into memory in the form of `packed`: the entry takes
+one address.
+"""
+
+import struct
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from types import FunctionType, SimpleNamespace
+from typing import Any, Generic, TypeVar
+
+import numba
+import numpy as np
+from numba import config
+from numba.extending import NativeValue, typeof_impl, unbox
+
+from .packed import Packed
+
+T = TypeVar("T")
+
+#: Bytes that arrays begin at a multiple of: a vector then lies in one line of the processor's memory.
+_LINE = 64
+
+
+class _Lent:
+    """A named tuple in memory, as long as this object lives.
+
+    address : of the tuple, laid out as LLVM does it
+    kind : numba's type
+    """
+
+    def __init__(self, group: tuple) -> None:
+        formats: list[str] = []
+        values: list[Any] = []
+        _lay_out(group, formats, values)
+        self._group = group  # its arrays must live as long
+        self._memory = np.frombuffer(struct.pack("@" + "".join(formats), *values), np.uint8)
+        self.address = self._memory.ctypes.data
+        self.kind = Packed(numba.typeof(group))
+
+
+def _lay_out(group: tuple, formats: list[str], values: list[Any]) -> None:
+    """Append the members of a named tuple, as formats of `struct` and their values."""
+    formats.append("0q")  # a tuple begins, and ends, at a multiple of eight bytes
+    for one in group:
+        if isinstance(one, np.ndarray):
+            formats.append(f"2P2qP{2 * one.ndim}q")  # without an owner, so that no references are counted
+            values += (0, 0, one.size, one.itemsize, one.ctypes.data, *one.shape, *one.strides)
+        elif isinstance(one, tuple):
+            _lay_out(one, formats, values)
+        else:
+            whole = isinstance(one, (int, np.integer))
+            formats.append("?" if isinstance(one, (bool, np.bool_)) else "q" if whole else "d")
+            values.append(one)
+    formats.append("0q")
+
+
+@typeof_impl.register(_Lent)
+def _type_of_lent(lent: _Lent, _: Any) -> Packed:
+    return lent.kind
+
+
+@unbox(Packed)
+def _unbox_lent(kind: Packed, lent: Any, context: Any) -> NativeValue:
+    number = context.pyapi.object_getattr_string(lent, "address")
+    address = context.pyapi.long_as_voidptr(number)
+    context.pyapi.decref(number)
+    return NativeValue(context.builder.bitcast(address, context.context.get_value_type(kind)))
+
+
+def lent(group: tuple) -> Any:
+    """Return a named tuple of arrays, numbers and such tuples for entries to take.
+
+    Kernels read its attributes as those of a packed tuple.  Arrays of the tuple may change, the tuple not.
+    """
+    return group if config.DISABLE_JIT else _Lent(group)
+
+
+def _aligned(shape: Any, dtype: Any = float) -> np.ndarray:
+    """Allocate zeros that begin at a multiple of _LINE bytes."""
+    kind = np.dtype(dtype)
+    size = int(np.prod(shape)) * kind.itemsize
+    memory = np.zeros(size + _LINE, np.uint8)
+    first = -memory.ctypes.data % _LINE
+    return memory[first : first + size].view(kind).reshape(shape)
+
+
+def _filled(shape: Any, value: Any) -> np.ndarray:
+    found = _aligned(shape, np.asarray(value).dtype)
+    found[...] = value
+    return found
+
+
+#: What entries that allocate call of numpy.
+_NUMPY = SimpleNamespace(
+    zeros=_aligned, empty=_aligned, full=_filled, ones=lambda shape: _filled(shape, 1.0), int64=np.int64,
+    bool_=np.bool_, uint8=np.uint8, inf=np.inf, nan=np.nan,
+)  # fmt: skip
+
+
+@cache
+def _in_python(function: Any) -> Callable:
+    """A kernel, and all that it calls, as Python functions."""
+    python = getattr(function, "py_func", function)
+    names = python.__code__.co_names
+    known = {name: value for name, value in python.__globals__.items() if name in names}
+    for name, value in known.items():
+        if value is np:
+            known[name] = _NUMPY
+        elif hasattr(value, "py_func"):
+            known[name] = _in_python(value)
+    return FunctionType(python.__code__, known, python.__name__, python.__defaults__, python.__closure__)
+
+
+def made(entry: Callable[..., T], *arguments: Any) -> T:
+    """Call an entry that allocates as a Python function, without compiling it."""
+    found: T = _in_python(entry)(*arguments)
+    return found
+
+
+class Memories(Generic[T]):
+    """Memory for jobs side by side: each takes what no other uses.
+
+    make : allocates one
+    """
+
+    def __init__(self, make: Callable[[], T]) -> None:
+        self._make = make
+        self._free: list[T] = []
+
+    @contextmanager
+    def one(self) -> Iterator[T]:
+        """Lend one for the time of a job; what an earlier job left in it must not matter."""
+        try:
+            memory = self._free.pop()
+        except IndexError:
+            memory = self._make()
+        yield memory
+        self._free.append(memory)

@@ -99,3 +99,40 @@ frame = fm.System(
     damping_ratios=0.02,
 )
 fm.plot_design(fm.design.least_peak(frame, [0.4, 2.0], mass=2, spread=0.2), size="85mm", panels=1)
+
+# %%
+# A motion in time, the ring-down of a carriage:
+#
+# .. code-block:: sh
+#
+#    frictionmap plot ring-down-history.nc --size 85mm -o ring-down.pdf
+carriage = fm.System(damping_ratios=0.01)
+scales = fm.Units(natural_frequency="4 Hz", stiffness="3158 N/m", load="3.158 N")
+silence = fm.Record.pulse("rectangle", "0 N", "0.01 s", unit="N", quantity="force")
+start = {"x": [20.0], "v": [0.0]}
+ring_down = fm.history(carriage, silence, beta=["3.1 N"], units=scales, start=start, after=1.5)
+fm.plot_history(ring_down, size="85mm")
+
+# %%
+# Friction response spectra, and an incremental dynamic analysis that is read from them:
+#
+# .. code-block:: sh
+#
+#    frictionmap plot spectra-spectrum.nc --size 85mm -o spectrum.pdf
+#    frictionmap plot spectra-spectrum.nc --size 85mm --quantity incremental -o incremental.pdf
+quakes = fm.Record.generate(
+    "kanai-tajimi", "20 s", "0.01 s", frequency="2.5 Hz", damping=0.6, peak="0.4 g", unit="g", count=20
+)
+spectra = fm.spectrum(quakes, np.geomspace(0.05, 4.0, 100), ["0.02 g", "0.05 g", "0.1 g"], damping=0.05)
+fm.plot_spectrum(spectra, size="85mm")
+fm.plot_incremental(spectra, size="85mm")
+
+# %%
+# A structure with its contacts and load, and its modes:
+#
+# .. code-block:: sh
+#
+#    frictionmap plot configs/contacts/two-storey-frame.toml --size 85mm -o frame.pdf
+#    frictionmap plot configs/contacts/two-storey-frame.toml --size 85mm --quantity modes -o modes.pdf
+fm.plot_structure(frame, size="85mm")
+fm.plot_modes(frame, size="85mm")

@@ -136,6 +136,9 @@ PARTIAL: LineStyle = {
 #: Colours of the lines of masses, used in turn; the lines are numbered.
 LINES = ("#2b4fa6", "#bd7f50", "#00162c", "#48b2d1", "#cc1f03", "#2880b8")
 
+#: Colours of several contacts, used in turn: none is that of a mass, and they differ in lightness.
+CONTACTS = ("#8a2d86", "#6c9a3b", "#1d4a2a", "#d98fc9", "#4c1246", "#b3cc6a")
+
 #: Line styles of response curves, by regime.
 REGIME_LINES: dict[int, Literal["-"] | tuple[int, tuple[float, ...]]] = {
     regimes.CONTINUOUS: "-",
@@ -153,6 +156,11 @@ HELD: LineStyle = {"color": "black", "linewidth": 1.3, "linestyle": ":", "label"
 
 #: Ends of the part of the colour map in use, which is neither white nor black on paper, light and dark.
 _LIGHT, _DARK = 0.88, 0.0
+
+
+def in_turn(colours: tuple[str, ...], number: int) -> list[str]:
+    """Colours of a number of lines; they begin again where there are more lines than colours."""
+    return [colours[k % len(colours)] for k in range(number)]
 
 
 def sequence(number: int) -> list[str]:

@@ -42,8 +42,12 @@ _SPRINGS = 1e-9
 #: Sizes of marks [points].
 _MARK, _LARGE = 5.0, 8.0
 
-#: How far below its point the mark of a contact to the ground is [points].
-_BELOW = 8.0
+#: How far from its point the mark of a contact to the ground is, and the tail of a load [points].
+_BELOW, _TAIL = 8.0, 26.0
+
+#: Contacts have their numbers up to this number; of points on a ring at most `_ON_RING` have their names,
+#: at a distance inside the ring [points].
+_NUMBERED, _ON_RING, _INSIDE = 16, 12, 26.0
 
 #: Letters of a description, at most.
 _LETTERS = 360
@@ -248,9 +252,9 @@ def _draw_graph(ax: Axes, system: System) -> None:
             if a in places and b in places:
                 _join(ax, places[a], places[b], "0.6", 1.0, -1.0)
     names = dict(enumerate(system.dofs.written_labels or map(str, system.dofs.numbers)))
-    _mark_places(ax, system, places, names)
-    whole = np.array([*places.values()])
-    (left, below), (right, above) = whole.min(axis=0) - 0.8, whole.max(axis=0) + 0.8
+    _mark_places(ax, system, places, names, round_ring=bool(_is_ring(system)))
+    whole, margin = np.array([*places.values()]), 1.6 if _is_ring(system) else 0.8  # loads are around a ring
+    (left, below), (right, above) = whole.min(axis=0) - margin, whole.max(axis=0) + margin
     _bare(ax, (left, below), (right, above))
     if len(shown) < len(at):
         _write(ax, f"{len(shown)} of {len(at)} degrees of freedom", (0.5, 0.02), transform=ax.transAxes)
@@ -282,30 +286,51 @@ def _in_a_row(rows: Sequence[int]) -> dict[int, np.ndarray]:
 
 
 def _mark_places(
-    ax: Axes, system: System | None, places: dict[int, np.ndarray], names: dict[int, str]
+    ax: Axes,
+    system: System | None,
+    places: dict[int, np.ndarray],
+    names: dict[int, str],
+    round_ring: bool = False,
 ) -> None:
-    """Mark points with their names, and the contacts and loads of a system at them."""
+    """Mark points with their names, and the contacts and loads of a system at them.
+
+    On a ring loads come from outside; contacts to the ground and names are inside.
+    """
+    out = {row: at / np.hypot(*at) if round_ring else np.array([0.0, 1.0]) for row, at in places.items()}
+    named = list(places)[:: -(-len(places) // _ON_RING)] if round_ring else list(places)
     for row, (x, y) in places.items():
         ax.plot(x, y, "o", color="black", markersize=_MARK, zorder=3.0, clip_on=False)
-        if len(places) <= _NAMED:
-            ax.annotate(
-                names[row], (x, y), xytext=(4.0, 4.0), textcoords="offset points", ha="left", zorder=5.0,
-                fontsize=points(8.0), path_effects=halo(2.0), parse_math=False, annotation_clip=False,
-            )  # fmt: skip
+        if row in named and len(named) <= _NAMED:
+            _name_place(ax, names[row], (x, y), -_INSIDE * out[row] if round_ring else None)
     if system is None:
         return
-    for place in contacts_of(system):
-        _mark_contact(ax, place, [places[row] for row in place.rows])
+    contacts = contacts_of(system)
+    for place in contacts:
+        ends = [places[row] for row in place.rows]
+        _mark_contact(ax, place, ends, -out[place.rows[0]], len(contacts) <= _NUMBERED)
     for row in loaded_rows(system):
-        x, y = places[row]
+        (x, y), (right, up) = places[row], _TAIL * out[row]
         ax.annotate(
-            "", (x, y), xytext=(0.0, 26.0), textcoords="offset points", annotation_clip=False, zorder=4.0,
+            "", (x, y), xytext=(right, up), textcoords="offset points", annotation_clip=False, zorder=4.0,
             arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.6},
         )  # fmt: skip
 
 
-def _mark_contact(ax: Axes, place: Place, ends: Sequence[np.ndarray]) -> None:
-    """Mark a contact: between its two points, or below its point, on the ground."""
+def _name_place(ax: Axes, name: str, at: tuple[float, float], shift: np.ndarray | None) -> None:
+    """Write the name of a point next to it, or at a distance [points] from it."""
+    beside: dict[str, Any] = {"xytext": (4.0, 4.0), "ha": "left"}
+    if shift is not None:
+        beside = {"xytext": shift, "ha": "center", "va": "center"}
+    ax.annotate(
+        name, at, textcoords="offset points", zorder=5.0, fontsize=points(8.0), path_effects=halo(2.0),
+        parse_math=False, annotation_clip=False, **beside,
+    )  # fmt: skip
+
+
+def _mark_contact(
+    ax: Axes, place: Place, ends: Sequence[np.ndarray], down: np.ndarray, numbered: bool
+) -> None:
+    """Mark a contact: between its two points, or beside its point, towards the ground."""
     style: dict[str, Any] = {
         "markersize": _LARGE,
         "markeredgecolor": CONTACT,
@@ -322,18 +347,24 @@ def _mark_contact(ax: Axes, place: Place, ends: Sequence[np.ndarray]) -> None:
     if len(ends) == 2:
         x, y = _join(ax, ends[0], ends[1], CONTACT, 1.4, 1.0)
         ax.plot(x, y, "s", **style)
-        ax.annotate(str(place.number), (x, y), (7.0, 6.0), textcoords="offset points", **number)
+        if numbered:
+            ax.annotate(str(place.number), (x, y), (7.0, 6.0), textcoords="offset points", **number)
         return
     x, y = ends[0]
     figure = ax.get_figure(root=True)
     assert figure is not None
 
     def below(size: float) -> Any:
-        return ax.transData + ScaledTranslation(0.0, -size / 72.0, figure.dpi_scale_trans)
+        return ax.transData + ScaledTranslation(*(size / 72.0 * down), figure.dpi_scale_trans)
 
     ax.plot(x, y, "D" if place.moves else "s", transform=below(_BELOW), **style)
-    ax.plot(x, y, "_", color=GROUND, markersize=18.0, clip_on=False, transform=below(_BELOW + 0.7 * _LARGE))
-    ax.annotate(str(place.number), (x, y), (8.0, -_BELOW), textcoords="offset points", **number)
+    ground = (2, 0, float(np.degrees(np.arctan2(down[1], down[0]))))  # a line across the way down
+    ax.plot(
+        x, y, marker=ground, color=GROUND, markersize=18.0, clip_on=False,
+        transform=below(_BELOW + 0.7 * _LARGE),
+    )  # fmt: skip
+    if numbered:
+        ax.annotate(str(place.number), (x, y), (8.0, -_BELOW), textcoords="offset points", **number)
 
 
 def _draw_beam(ax: Axes, beam: Beam, system: System | None) -> None:
@@ -451,8 +482,8 @@ def plot_structure(
 
     Masses of a chain are joined by their springs; contacts to the ground are below them, contacts to the base
     and between masses above.  Other structures are points, with lines where their stiffness matrix couples
-    them: those of sectors on circles, others in a row, of many those with contacts and loads.  Contacts have
-    their numbers.
+    them: those of sectors on circles, others in a row, of many those with contacts and loads.  Up to
+    16 contacts have their numbers.
 
     Parameters
     ----------

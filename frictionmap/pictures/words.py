@@ -14,11 +14,11 @@ _TOGETHER = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
 def balanced(text: str, width: int) -> str:
     """Wrap text into as few lines of `width` characters as possible, all of about equal length."""
     text = text.replace(" = ", _TOGETHER)
-    lines = textwrap.wrap(text, width)
+    lines = textwrap.wrap(text, width, break_on_hyphens=False)
     narrow = max(1, -(-len(text) // max(1, len(lines))))
-    while len(textwrap.wrap(text, narrow)) > len(lines):
+    while len(textwrap.wrap(text, narrow, break_on_hyphens=False)) > len(lines):
         narrow += 1
-    return "\n".join(textwrap.wrap(text, narrow)).replace(_TOGETHER, " = ")
+    return "\n".join(textwrap.wrap(text, narrow, break_on_hyphens=False)).replace(_TOGETHER, " = ")
 
 
 def system_words(ds: xr.Dataset) -> str:

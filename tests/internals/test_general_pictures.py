@@ -282,12 +282,12 @@ def test_every_contact_has_a_line_a_bar_and_its_events(two):
     load, z, stuck, masses, friction = plot_response(two)
     for ax, name in ((z, "z"), (friction, "friction")):
         lines = drawn(ax)
-        assert [line.get_color() for line in lines] == list(palette.LINES[:2])
+        assert [line.get_color() for line in lines] == list(palette.CONTACTS[:2])
         np.testing.assert_array_equal([line.get_ydata() for line in lines], two[name])
-    assert [to_hex(bar.get_facecolor()[0]) for bar in stuck.collections] == list(palette.LINES[:2])
+    assert [to_hex(bar.get_facecolor()[0]) for bar in stuck.collections] == list(palette.CONTACTS[:2])
     assert len(drawn(masses)) == 2
     dots = {line.get_color(): line for line in z.lines if line.get_marker() == "o"}
-    for number, colour in enumerate(palette.LINES[:2], 1):
+    for number, colour in enumerate(palette.CONTACTS[:2], 1):
         begins = (two["event_contact"] == number) & (two["event_direction"] == 0)
         np.testing.assert_array_equal(dots[colour].get_ydata(), two["event_z"][begins.values])
     assert "2 and 2 stops per cycle" in title([load])

@@ -1,6 +1,6 @@
 """What pictures are made of: colours that stay apart, cells that no pixel loses, labels that lie apart."""
 
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 import pytest
@@ -102,6 +102,34 @@ def test_motions_on_a_belt_look_different_from_one_another_and_from_numbers_of_s
     assert min(difference(to_rgb(a), to_rgb(b), who) for a, b in combinations(own, 2)) > least
     without_stops = palette.NO_LOAD[regimes.CYCLE_WITHOUT_STOPS].colour
     assert without_stops not in [look.colour for look in palette.CLASSES]
+
+
+@pytest.mark.parametrize(
+    ("who", "least"), [("trichromat", 12.0), ("protanope", 8.0), ("deuteranope", 8.0), ("grey", 6.0)]
+)
+def test_contacts_look_different_from_one_another(who, least):
+    pairs = combinations(palette.CONTACTS, 2)
+    assert min(difference(to_rgb(a), to_rgb(b), who) for a, b in pairs) > least
+
+
+def test_no_contact_looks_like_a_mass():
+    pairs = product(palette.CONTACTS, palette.LINES)
+    assert min(difference(to_rgb(a), to_rgb(b), "trichromat") for a, b in pairs) > 15.0
+
+
+def test_lines_of_masses_and_contacts_have_colours_of_their_own():
+    frame = fm.System(
+        mass_ratios=[1.0, 1.0],
+        stiffness_ratios=[1.0, 1.0],
+        contacts=[fm.Contact("fixed-wall", 1), fm.Contact("between-masses", (1, 2))],
+    )
+    z, stuck, masses = fm.plot_response(fm.response(frame, 0.7, 0.2))[1:4]
+    of_contacts, of_masses = ({line.get_color() for line in ax.lines} for ax in (z, masses))
+    assert stuck.get_ylabel() == "stuck"
+    assert set(palette.CONTACTS[:2]) <= of_contacts
+    assert set(palette.LINES[:2]) <= of_masses
+    assert not set(palette.CONTACTS) & of_masses
+    assert not set(palette.LINES[:2]) & of_contacts
 
 
 def lightness(label):

@@ -8,10 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from ...datasets.questions import record
-from ..palette import LIM, LINES, STICK, LineStyle
+from ..maps.working_point import WORKING_POINT
+from ..palette import LIM, STICK, LineStyle
 from ..panels import Handle
 from ..second_axes import frequency_on_top, on_the_right
-from .performance import in_units
+from .performance import ANSWER, in_units
 
 #: Friction that is shown, as a multiple of that of the answer.
 _SHOWN = 3.0
@@ -33,16 +34,18 @@ def draw_limits(ax: Axes, ds: xr.Dataset) -> list[Handle]:
             handles += ax.plot(r, np.where(np.isfinite(values), values, np.nan), **style)
     shown = [_SHOWN * beta] if np.isfinite(beta) and beta > 0.0 else []
     top = max([*shown, *(2.0 * one for one in tops)], default=1.0) or 1.0
-    mark: dict[str, Any] = {"color": LINES[4], "marker": "o", "markersize": 6.0}
+    name = record(str(ds["question"].values)).mark
+    answer: dict[str, Any] = {"color": ANSWER, "marker": "o", "markersize": 6.0}
+    mark = WORKING_POINT if name == "working point" else answer
+    colour = mark.get("color", "black")
     if np.isfinite(beta) and "at_r" in ds:
-        ax.axhline(beta, color=LINES[4], linewidth=0.9, linestyle=":")
+        ax.axhline(beta, color=colour, linewidth=0.9, linestyle=":")
         ax.plot([float(ds["at_r"])], [beta], zorder=4.0, **mark)
-        name = record(str(ds["question"].values)).mark
         label = f"{name}: β = {beta:.4g}{in_units(ds, beta, 'force', top)}"
-        handles.append(Line2D([], [], linestyle=":", label=label, **mark))
+        handles.append(Line2D([], [], label=label, **{**mark, "linestyle": ":"}))
     for name in ("nearest_r_on_beta_lim", "nearest_r_on_beta_stick"):
         if name in ds and r[0] <= float(ds[name]) <= r[-1]:
-            ax.plot([float(ds[name])], [beta], "|", color=LINES[4], markersize=12.0)
+            ax.plot([float(ds[name])], [beta], "|", color=colour, markersize=12.0)
     ax.set_xlim(r[0], r[-1])
     ax.set_ylim(0.0, top)
     ax.set_xlabel(r"frequency ratio $r$")

@@ -27,7 +27,7 @@ _ABOVE = 1.1
 _TOLERANCE = 0.2
 
 #: Blue is the answer, and lighter where its friction may be; brown is a second vertical axis.
-_ANSWER, _ASIDE, _LIMIT, _OTHER = LINES[0], LINES[1], LINES[4], "#606060"
+ANSWER, _ASIDE, _LIMIT, _OTHER = LINES[0], LINES[1], LINES[4], "#606060"
 _TINT = 0.18
 _DASHED, _DOTTED = (0, (4, 1.5)), (0, (1.5, 1.2))
 
@@ -78,8 +78,8 @@ def draw_performance(ax: Axes, ds: xr.Dataset) -> list[Handle]:
         handles += _draw_size(ax, ds["worst_search"].values, own, top, {"linewidth": 1.4}, _worst_label(ds))
     thin: dict[str, Any] = {"linewidth": 0.9, "linestyle": _DASHED} if worst else {"linewidth": 1.4}
     handles += _draw_size(ax, beta, size, top, thin, _curve_label(ds))
-    ax.plot([best], [least], "o", color=_ANSWER, markersize=6.0, zorder=4.0)
-    handles.append(Line2D([], [], color=_ANSWER, marker="o", linestyle="none", label=_answer_label(ds)))
+    ax.plot([best], [least], "o", color=ANSWER, markersize=6.0, zorder=4.0)
+    handles.append(Line2D([], [], color=ANSWER, marker="o", linestyle="none", label=_answer_label(ds)))
     if "peak_of_sample" in ds:
         sizes = ds["peak_of_sample"].values
         ax.plot(np.full(sizes.size, best), sizes, "_", color=_OTHER, markersize=9.0, zorder=3.0)
@@ -110,7 +110,7 @@ def draw_ridge(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     """Draw the least peak of every ratio of the second contact, and the friction at which it occurs."""
     ratio, best = ds["ratio_search"].values, float(ds["second_ratio"])
     ax.plot(ratio, ds["peak_of_ratio"].values, ".-", color="black", linewidth=1.4)
-    ax.plot([best], [float(ds["peak"].values[0])], "o", color=_ANSWER, markersize=6.0, zorder=4.0)
+    ax.plot([best], [float(ds["peak"].values[0])], "o", color=ANSWER, markersize=6.0, zorder=4.0)
     ax.set_xlabel(f"friction of contact {int(ds['second'])} / $\\beta$")
     ax.set_ylabel(f"least peak {_unit_of(ds)}")
     ax.set_ylim(bottom=0.0)
@@ -122,7 +122,7 @@ def draw_ridge(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     return [
         Line2D([], [], color="black", linewidth=1.4, marker=".", label="least peak at each ratio"),
         Line2D([], [], color=_ASIDE, linewidth=1.1, linestyle=(0, (4, 2)), label="its friction"),
-        Line2D([], [], color=_ANSWER, marker="o", linestyle="none", label=label),
+        Line2D([], [], color=ANSWER, marker="o", linestyle="none", label=label),
     ]
 
 
@@ -152,8 +152,8 @@ def _draw_ranges(ax: Axes, ds: xr.Dataset, right: float) -> list[Handle]:
 
     def shade(low: float, high: float, label: str) -> None:
         if low < right and high > low:
-            ax.axvspan(low, min(high, right), color=_ANSWER, alpha=_TINT, linewidth=0.0)
-            handles.append(Patch(color=_ANSWER, alpha=_TINT, linewidth=0.0, label=label))
+            ax.axvspan(low, min(high, right), color=ANSWER, alpha=_TINT, linewidth=0.0)
+            handles.append(Patch(color=ANSWER, alpha=_TINT, linewidth=0.0, label=label))
 
     if {"interval_begin", "interval_end"} <= set(ds):
         for low, high in zip(ds["interval_begin"].values, ds["interval_end"].values, strict=True):
@@ -182,7 +182,7 @@ def _curve_style(level: float, best: float) -> dict[str, Any]:
     if np.isinf(level) or level == 0.0:
         return {"color": "#808080", "linewidth": 1.1, "linestyle": ":" if np.isinf(level) else "-"}
     if abs(level - best) <= 1e-9 * best:
-        return {"color": _ANSWER, "linewidth": 1.6}
+        return {"color": ANSWER, "linewidth": 1.6}
     return {"color": "black", "linewidth": 1.1, "linestyle": _DASHED if level < best else _DOTTED}
 
 
@@ -206,17 +206,17 @@ def draw_responses(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     for level, curve in zip(levels, curves, strict=True):
         words = "stuck" if np.isinf(level) else _beta(ds, level) if level else "without friction"
         style = _curve_style(level, best)
-        if nominal and style["color"] == _ANSWER:
+        if nominal and style["color"] == ANSWER:
             style["color"] = "black"
         draw(curve, words + nominal, style)
     if of_sample is not None:
         draw(
             of_sample,
             f"{_beta(ds, best)}, sample {int(ds['deciding_sample'])}",
-            {"color": _ANSWER, "linewidth": 1.6},
+            {"color": ANSWER, "linewidth": 1.6},
         )
     if "peak_r" in ds:
-        ax.plot(ds["peak_r"].values, ds["peak"].values, "o", color=_ANSWER, markersize=4.5, clip_on=True)
+        ax.plot(ds["peak_r"].values, ds["peak"].values, "o", color=ANSWER, markersize=4.5, clip_on=True)
     ax.set_xlim(r[0], r[-1])
     ax.set_ylim(0.0, top)
     ax.set_xlabel(r"frequency ratio $r$")

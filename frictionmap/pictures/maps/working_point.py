@@ -18,7 +18,7 @@ from ..panels import Handle, halo
 if TYPE_CHECKING:
     import xarray as xr
 
-_MARK: dict[str, Any] = {
+WORKING_POINT: dict[str, Any] = {
     "marker": "X", "markersize": 9.0, "markerfacecolor": "white", "markeredgecolor": "black",
     "markeredgewidth": 1.1, "linestyle": "none",
 }  # fmt: skip
@@ -61,6 +61,6 @@ def mark_point(ax: Axes, ds: "xr.Dataset") -> list[Handle]:
         sides = 2.0 * box[0], 2.0 * box[1]
         ax.add_patch(Rectangle(corner, *sides, zorder=4.4, path_effects=halo(2.6), **_BOX))
         handles.append(Patch(label=f"uncertainty: r ± {box[0]:g}, β ± {box[1]:g}", **_BOX))
-    ax.plot(*point, zorder=4.5, **_MARK)
+    ax.plot(*point, zorder=4.5, **WORKING_POINT)
     label = f"working point: r = {point[0]:g}, β = {point[1]:g}"
-    return [Line2D([], [], label=label, **_MARK), *handles]
+    return [Line2D([], [], label=label, **WORKING_POINT), *handles]

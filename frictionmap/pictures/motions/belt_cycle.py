@@ -13,12 +13,12 @@ from ...datasets.physical import ones_of
 from ...units.table import UNITS, handy_unit
 from ..drawing import with_options
 from ..options import FigureOptions
-from ..palette import CLASSES, LINES, STUCK
+from ..palette import CLASSES, LINES, STUCK, in_turn
 from ..panels import Handle, new_figure
 from ..shapes import check_holds, to_draw
 from .in_time import end_picture
 from .loops import draw_arrow
-from .traces import CONTACT_COLOUR, is_at_rest
+from .traces import contact_colours, is_at_rest
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -80,13 +80,13 @@ def _draw_times(places: Axes, forces: Axes, ds: xr.Dataset) -> None:
     time = ds["time_s" if in_seconds else "time"].values
     place, length = _handy(ds, "x", "length")
     force, newton = _handy(ds, "friction", "force")
-    for ax, rows, words in (
-        (places, place * ds["x"].values, f"displacement{length}"),
-        (forces, force * np.atleast_2d(ds["friction"].values), f"friction{newton}"),
+    x, friction = place * ds["x"].values, force * np.atleast_2d(ds["friction"].values)
+    for ax, rows, colours, words in (
+        (places, x, in_turn(LINES, len(x)), f"displacement{length}"),
+        (forces, friction, contact_colours(len(friction)), f"friction{newton}"),
     ):
-        only = ax is forces and len(rows) == 1
-        for k, row in enumerate(rows):
-            ax.plot(time, row, color=CONTACT_COLOUR if only else LINES[k % len(LINES)], linewidth=1.2)
+        for row, colour in zip(rows, colours, strict=True):
+            ax.plot(time, row, color=colour, linewidth=1.2)
         ax.set_ylabel(words)
         ax.margins(x=0.0)
         for begin, end in stuck_times(time, np.atleast_2d(ds["direction"].values)):
@@ -98,26 +98,25 @@ def _draw_plane(ax: Axes, ds: xr.Dataset) -> None:
     """Draw velocities over displacements, and the speed of the belt."""
     place, length = _handy(ds, "x", "length")
     speed, unit = _handy(ds, "wall_speed", "velocity")
-    for k, (x, v) in enumerate(zip(ds["x"].values, ds["v"].values, strict=True)):
-        ax.plot(place * x, speed * v, color=LINES[k % len(LINES)], linewidth=1.2)
+    colours = in_turn(LINES, ds.sizes["dof"])
+    for x, v, colour in zip(ds["x"].values, ds["v"].values, colours, strict=True):
+        ax.plot(place * x, speed * v, color=colour, linewidth=1.2)
         if not is_at_rest(x):
-            draw_arrow(ax, place * x, speed * v, int(np.argmin(v)), LINES[k % len(LINES)])
+            draw_arrow(ax, place * x, speed * v, int(np.argmin(v)), colour)
     ax.axhline(speed * float(ds["wall_speed"]), color="black", linewidth=0.8, linestyle=(0, (4, 2)))
     ax.set_xlabel(f"displacement{length}")
     ax.set_ylabel(f"velocity{unit}")
 
 
 def _handles(ds: xr.Dataset) -> list[Handle]:
+    masses, contacts = ds["dof"].values, np.atleast_1d(ds["contact"].values if "contact" in ds else 1)
     handles: list[Handle] = []
-    if ds.sizes["dof"] > 1:
-        handles += [
-            Line2D([], [], color=LINES[k % len(LINES)], label=f"mass {number}")
-            for k, number in enumerate(ds["dof"].values)
-        ]
-    if ds.sizes.get("contact", 1) > 1:
-        handles += [
-            Line2D([], [], color=LINES[k % len(LINES)], label=f"friction of contact {number}")
-            for k, number in enumerate(ds["contact"].values)
-        ]
+    for numbers, colours, words in (
+        (masses, in_turn(LINES, masses.size), "mass"),
+        (contacts, contact_colours(contacts.size), "friction of contact"),
+    ):
+        if numbers.size > 1:
+            pairs = zip(numbers, colours, strict=True)
+            handles += [Line2D([], [], color=colour, label=f"{words} {number}") for number, colour in pairs]
     handles.append(Line2D([], [], color="black", linestyle=(0, (4, 2)), label="speed of the belt"))
     return [*handles, Patch(color=CLASSES[STUCK].colour, alpha=0.35, label="all contacts stick")]

@@ -15,7 +15,7 @@ from ...errors import InputError
 from ..drawing import with_options
 from ..marks import spread
 from ..options import FigureOptions, current
-from ..palette import CLASSES, LINES, OPEN_COLOUR, OPEN_HATCH, OPEN_LABEL, STUCK, Shade
+from ..palette import CLASSES, LINES, OPEN_COLOUR, OPEN_HATCH, OPEN_LABEL, STUCK, Shade, in_turn
 from ..panels import Handle, given_axes, halo, legend_below, legend_under, new_figure, title_figure
 from ..second_axes import in_brackets, on_the_right, time_on_top
 from ..shapes import check_holds, check_range, to_draw
@@ -173,7 +173,7 @@ def _draw_masses(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
     """Draw every mass, with its number at the end of its line; of many masses some are numbered."""
     x = np.array([at_rest(one) for one in ds["x"].values])
     numbers = ds["dof"].values
-    colours = [LINES[k % len(LINES)] for k in range(len(x))]
+    colours = in_turn(LINES, len(x))
     for place, colour in zip(x, colours, strict=True):
         ax.plot(turns, place, color=colour, linewidth=1.2)
     _set_limits_around(ax, x)
@@ -246,7 +246,7 @@ def _draw_normal(ax: Axes, ds: xr.Dataset, turns: np.ndarray, traces: Sequence[T
 def _draw_springs(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
     """Draw the forces of piecewise linear springs, with their numbers at the ends of the lines."""
     forces = np.atleast_2d(ds["spring_force"].values)
-    colours = [LINES[k % len(LINES)] for k in range(len(forces))]
+    colours = in_turn(LINES, len(forces))
     for force, colour in zip(forces, colours, strict=True):
         ax.plot(turns, force, color=colour, linewidth=1.2)
     _set_limits_around(ax, forces)

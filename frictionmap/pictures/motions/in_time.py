@@ -15,10 +15,10 @@ from ...errors import InputError
 from ...units.table import UNITS, handy_unit
 from ..drawing import with_options
 from ..options import FigureOptions
-from ..palette import CLASSES, LINES, OPEN_COLOUR, STUCK, Shade
+from ..palette import CLASSES, LINES, OPEN_COLOUR, STUCK, Shade, in_turn, sequence
 from ..panels import Handle, given_axes, legend_below, legend_under, new_figure, title_figure
 from ..shapes import check_holds, check_range, to_draw
-from .traces import CONTACT_COLOUR
+from .traces import contact_colours
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
@@ -119,12 +119,12 @@ def _shade(ax: Axes, ds: xr.Dataset) -> None:
 def _draw_rows(ax: Axes, time: np.ndarray, values: np.ndarray, words: str) -> list[Handle]:
     """Draw a line for every mass or contact; return legend entries where there are several."""
     rows = _by_rows(values)
-    for k, row in enumerate(rows):
-        only = words == "contact" and len(rows) == 1
-        ax.plot(time, row, color=CONTACT_COLOUR if only else LINES[k % len(LINES)], linewidth=1.1)
+    colours = contact_colours(len(rows)) if words == "contact" else in_turn(LINES, len(rows))
+    for row, colour in zip(rows, colours, strict=True):
+        ax.plot(time, row, color=colour, linewidth=1.1)
     if len(rows) == 1:
         return []
-    return [Line2D([], [], color=LINES[k % len(LINES)], label=f"{words} {k + 1}") for k in range(len(rows))]
+    return [Line2D([], [], color=colour, label=f"{words} {k}") for k, colour in enumerate(colours, 1)]
 
 
 def time_words(ds: xr.Dataset) -> str:
@@ -151,6 +151,8 @@ def _draw_traces(axes: "AxesArray", ds: xr.Dataset) -> list[Handle]:
     handles = _draw_rows(axes[1], time, x, "mass")
     axes[1].set_ylabel(f"displacement{length}")
     force, newton = values_in_si(ds, "friction", "N", "N")
+    if newton:
+        force, newton = _handy(force, "force")
     handles += _draw_rows(axes[2], time, force, "contact")
     axes[2].set_ylabel(f"contact force{newton}")
     axes[2].set_xlabel(time_words(ds))
@@ -288,15 +290,22 @@ def plot_history(
     return axes
 
 
+def friction_axis(ds: xr.Dataset) -> tuple[np.ndarray, str]:
+    """Values of friction and the name of their axis: forces where their unit is known, else ratios."""
+    force = ds.attrs.get(SCALES["force"])
+    if force is None:
+        return ds["beta"].values, r"friction ratio $\beta$"
+    values, unit = _handy(ds["beta"].values * float(force), "force")
+    return values, f"friction force{unit}"
+
+
 def _draw_peaks(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     """Draw the largest displacement of the last mass over friction: every record, and their median."""
     values, unit = values_in_si(ds, "amplitude", "m", "m")
     if unit:
         values, unit = _handy(values, "length")
     peaks = values[..., -1].reshape(-1, *values.shape[2:-1])  # records and scales, mu, beta
-    beta, of_friction = ds["beta"].values, ""
-    if (force := ds.attrs.get(SCALES["force"])) is not None:
-        beta, of_friction = _handy(beta * float(force), "force")
+    beta, of_friction = friction_axis(ds)
     handles: list[Handle] = []
     for k, mu in enumerate(ds["mu"].values):
         colour = LINES[k % len(LINES)]
@@ -304,8 +313,9 @@ def _draw_peaks(ax: Axes, ds: xr.Dataset) -> list[Handle]:
             ax.plot(beta, peaks[:, k].T, color=colour, **_FAINT)
         draw_band(ax, beta, peaks[:, k], colour)
         handles.append(Line2D([], [], color=colour, label=rf"$\mu = {mu:g}$"))
-    ax.set_xlabel(f"friction force{of_friction}" if of_friction else r"friction ratio $\beta$")
-    ax.set_ylabel(f"largest displacement{unit}")
+    ax.set_xlabel(of_friction)
+    of_mass = f" of mass {ds['dof'].values[-1]}" if ds.sizes["dof"] > 1 else ""
+    ax.set_ylabel(f"largest displacement{of_mass}{unit}")
     ax.set_ylim(bottom=0.0)
     return handles
 
@@ -359,10 +369,10 @@ def plot_spectrum(
     values = ds[name].isel(scale=0, mu=0).transpose("record", "period", "beta").values
     period = ds["period"].values
     handles: list[Handle] = []
-    for k, b in enumerate(chosen):
-        draw_band(axes[0], period, values[:, :, b], LINES[k])
+    for b, colour in zip(chosen, sequence(len(chosen)), strict=True):
+        draw_band(axes[0], period, values[:, :, b], colour)
         label = f"friction {beta[b]:.3g}{unit_of(ds['beta'])}"
-        handles.append(Line2D([], [], color=LINES[k], label=label))
+        handles.append(Line2D([], [], color=colour, label=label))
     if period.size > 1 and period[0] > 0.0 and period[-1] / period[0] > 20.0 and np.isfinite(period[-1]):
         axes[0].set_xscale("log")
     axes[0].set_xlabel("natural period" + (" [s]" if ds["period"].attrs.get("units") == "s" else ""))

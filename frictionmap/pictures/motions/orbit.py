@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from ..curves.harmonics import LOWEST, levels_of
 from ..drawing import with_options
 from ..options import FigureOptions, current
-from ..palette import LINES
+from ..palette import LINES, in_turn
 from ..panels import Handle, given_axes, grid_of_panels, legend_below, legend_under
 from ..second_axes import length_on_top
 from ..shapes import check_holds, to_draw
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
     from ..panels import AxesArray
 
 
-#: Marker of the contacts where there are several: their colours are those of masses, too.
+#: Marker of the contacts where there are several: it shows them in grey, too.
 _CONTACT_MARKER = "s"
 
 
 def _colours(ds: xr.Dataset) -> list[str]:
-    return [LINES[k % len(LINES)] for k in range(ds.sizes["dof"])]
+    return in_turn(LINES, ds.sizes["dof"])
 
 
 def _draw_portrait(ax: Axes, ds: xr.Dataset) -> None:

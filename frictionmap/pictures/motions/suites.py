@@ -12,7 +12,7 @@ from ...errors import InputError
 from ...motions.statistics import over_scale
 from ..drawing import with_options
 from ..options import FigureOptions
-from ..palette import LINES
+from ..palette import LINES, sequence
 from ..panels import Handle, legend_under
 from ..shapes import check_holds, to_draw
 from .in_time import (
@@ -20,6 +20,7 @@ from .in_time import (
     draw_band,
     drawn_peak,
     end_picture,
+    friction_axis,
     of_one_system,
     one_motion,
     one_panel,
@@ -87,11 +88,11 @@ def plot_incremental(
     periods = ds["period"].values
     count = min(periods.size, _MOST_LINES)
     handles: list[Handle] = []
-    for k, p in enumerate(np.linspace(0, periods.size - 1, count).round().astype(int)):
-        draw_band(axes[0], peaks["scale"].values, peaks.values[:, p], LINES[k])
-        handles.append(
-            Line2D([], [], color=LINES[k], label=f"period {periods[p]:.3g}{unit_of(ds['period'])}")
-        )
+    drawn = np.linspace(0, periods.size - 1, count).round().astype(int)
+    for p, colour in zip(drawn, sequence(count), strict=True):
+        draw_band(axes[0], peaks["scale"].values, peaks.values[:, p], colour)
+        label = f"period {periods[p]:.3g}{unit_of(ds['period'])}"
+        handles.append(Line2D([], [], color=colour, label=label))
     axes[0].set_xlabel(f"factor of the records, friction {chosen:.3g}{unit_of(ds['beta'])}")
     axes[0].set_ylabel(words_of(ds[name]))
     axes[0].set_xlim(0.0, float(peaks["scale"].max()))
@@ -156,8 +157,9 @@ def plot_energies(
         whole = values.reshape(*values.shape[:4], -1).sum(axis=-1)  # of all contacts
         layers.append(whole[:, 0, 0].mean(axis=0))
     axes = one_panel(ax)
-    _stack(axes[0], ds["beta"].values, layers, joule)
-    axes[0].set_xlabel(r"friction ratio $\beta$")
+    friction, words = friction_axis(ds)
+    _stack(axes[0], friction, layers, joule)
+    axes[0].set_xlabel(words)
     handles = _entries("stored at the end")
     if ax is None:
         end_picture(ds, axes, handles, "mean of the records" if ds.sizes["record"] > 1 else "")

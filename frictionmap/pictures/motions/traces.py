@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ...files.stored import stored_contacts
-from ..palette import LINES
+from ..palette import CONTACTS, in_turn
 from ..words import name_of_contact
 
 #: Colour of the only contact.
@@ -90,6 +90,11 @@ def _trace(ds: xr.Dataset, number: int, colour: str, label: str) -> Trace:
     )  # fmt: skip
 
 
+def contact_colours(number: int) -> list[str]:
+    """Colours of all contacts of a motion."""
+    return [CONTACT_COLOUR] if number == 1 else in_turn(CONTACTS, number)
+
+
 def traces_of(ds: xr.Dataset) -> list[Trace]:
     """Motion of every contact of a response."""
     if "contact" not in ds.dims:
@@ -97,8 +102,8 @@ def traces_of(ds: xr.Dataset) -> list[Trace]:
         return [_trace(ds, number, CONTACT_COLOUR, "")]
     contacts = [ds.isel(contact=k) for k in range(ds.sizes["contact"])]
     return [
-        _trace(one, int(one["contact"]), LINES[k % len(LINES)], name_of_contact(one))
-        for k, one in enumerate(contacts)
+        _trace(one, int(one["contact"]), colour, name_of_contact(one))
+        for one, colour in zip(contacts, contact_colours(len(contacts)), strict=True)
     ]
 
 

@@ -355,7 +355,8 @@ def _mark_contact(
     assert figure is not None
 
     def below(size: float) -> Any:
-        return ax.transData + ScaledTranslation(*(size / 72.0 * down), figure.dpi_scale_trans)
+        right, up = size / 72.0 * down
+        return ax.transData + ScaledTranslation(right, up, figure.dpi_scale_trans)
 
     ax.plot(x, y, "D" if place.moves else "s", transform=below(_BELOW), **style)
     ground = (2, 0, float(np.degrees(np.arctan2(down[1], down[0]))))  # a line across the way down

@@ -40,9 +40,9 @@ def draw_limits(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     colour = mark.get("color", "black")
     if np.isfinite(beta) and "at_r" in ds:
         ax.axhline(beta, color=colour, linewidth=0.9, linestyle=":")
-        ax.plot([float(ds["at_r"])], [beta], zorder=4.0, **mark)
+        ax.plot([float(ds["at_r"])], [beta], zorder=4.0, clip_on=False, **mark)
         label = f"{name}: β = {beta:.4g}{in_units(ds, beta, 'force', top)}"
-        handles.append(Line2D([], [], label=label, **{**mark, "linestyle": ":"}))
+        handles.append(Line2D([], [], label=label, **{"color": colour, **mark, "linestyle": ":"}))
     for name in ("nearest_r_on_beta_lim", "nearest_r_on_beta_stick"):
         if name in ds and r[0] <= float(ds[name]) <= r[-1]:
             ax.plot([float(ds[name])], [beta], "|", color=colour, markersize=12.0)

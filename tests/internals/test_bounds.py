@@ -15,7 +15,8 @@ from frictionmap._kernels.one_mass import events, sliding_orbit
 from frictionmap._kernels.one_mass.scan_step import step_constants
 from frictionmap._kernels.one_mass.sliding_orbit import Oscillator
 from frictionmap._kernels.structure import sliding_orbit as structure_orbit
-from frictionmap._kernels.structure.oscillators import COLUMNS, make_state
+from frictionmap._kernels.structure.oscillators import make_state
+from frictionmap._kernels.structure.sliding_orbit import make_wave
 from frictionmap._kernels.structure.state import LOAD, SPEED, W, make_structure
 from frictionmap._kernels.taylor_series import MAX_TERMS
 from frictionmap.single.cells import Cells
@@ -113,14 +114,16 @@ def test_nothing_of_a_structure_can_stop_within_the_radius():
         st = make_structure(found.model, found.loads, 0, r, 200.0)
         orbit, n = found.orbit, st.n
         phase = orbit_phase(orbit.v_abs[0], orbit.v_arg[0], orbit.u[0], beta)
-        state, before, table = make_state(n), make_state(n), np.zeros((n + 1, COLUMNS))
-        radius = structure_radius(st, orbit, 0, beta, mu * beta, phase, table, state, before)
+        state = make_state(n)
+        radius = structure_radius(st, orbit, 0, beta, mu * beta, phase, make_wave(st.h, 1.0))
         least = math.inf
         for tau in np.linspace(-math.pi, 0.0, 601) - phase:
             c, s = math.cos(tau), math.sin(tau)
             orbit_state(st, orbit, 0, beta, phase, c, s, state)
             least = min(least, _least_deviation(st, state, c, s, mu * beta))
         assert radius <= least * (1.0 + 1e-2) + 1e-9
+        finer = structure_radius(st, orbit, 0, beta, mu * beta, phase, make_wave(st.h, 32.0))
+        assert radius * (1.0 - 1e-9) <= finer <= least * (1.0 + 1e-2) + 1e-9
         if radius > 0.0:
             ratios.append(radius / least)
     assert len(ratios) > 30

@@ -33,7 +33,7 @@ from ..structure.newton import (
     solve_return,
 )
 from ..structure.oscillators import FELL, Scratch, make_scratch, make_state, padded
-from ..structure.sliding_orbit import Continuous, orbit_state, stop_free_radius
+from ..structure.sliding_orbit import Continuous, make_wave, orbit_state, stop_free_radius
 from ..structure.state import (
     Loads,
     Model,
@@ -109,7 +109,7 @@ class ManyMasses(NamedTuple):
     recurrence_threshold: float
     i: int  # index of the frequency
     st: StructureAtFrequency
-    fine: StructureAtFrequency  # with scan steps at least as short, for bounds over a whole orbit
+    wave: np.ndarray  # see `structure.sliding_orbit`
     orbit: Continuous
     state: np.ndarray  # (2, padded(n)) present state of the free oscillators
     kept: np.ndarray  # (SLOTS, 2, padded(n)) saved states
@@ -125,11 +125,11 @@ def at_frequency(system, i):
     """Build the motion of the structure at the i-th frequency, r > 0."""
     r = system.r[i]
     st = make_structure(system.model, system.loads, i, r, system.steps)
-    fine = make_structure(system.model, system.loads, i, r, max(system.steps, FINE_STEPS))
     n = st.n
     return ManyMasses(
         st.h, r, 1.0, system.orbit.v_abs[i], system.marginal[i], _RECURRENCE_THRESHOLD, i,
-        st, fine, system.orbit, make_state(n), np.zeros((SLOTS, 2, padded(n))), make_memory(st.h, 2 * n),
+        st, make_wave(st.h, max(1.0, FINE_STEPS / system.steps)), system.orbit, make_state(n),
+        np.zeros((SLOTS, 2, padded(n))), make_memory(st.h, 2 * n),
         make_log(LOGGED), make_workspace(n), make_scratch(n), np.empty((0, 0)),
     )  # fmt: skip
 
@@ -185,13 +185,11 @@ def lasting_vibration(motion):
 @kernel
 def stop_free(motion, contact):
     """See `motion.stop_free`."""
-    orbit, i, work = motion.orbit, motion.i, motion.work
+    orbit, i = motion.orbit, motion.i
     v_abs, u, b = orbit.v_abs[i], orbit.u[i], contact.b
     amplitude = continuous_amplitude(v_abs, u, orbit.g[i], b)
     phase = orbit_phase(v_abs, orbit.v_arg[i], u, b)
-    radius = stop_free_radius(
-        motion.fine, orbit, i, b, contact.mu_b, phase, work.table, work.middle, work.moved
-    )
+    radius = stop_free_radius(motion.st, orbit, i, b, contact.mu_b, phase, motion.wave)
     return amplitude, phase, radius
 
 

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 _MOST_VALUES = 10_000
 _MOST_MASSES = 64
 
+#: Where a system keeps its lines, beside its cached properties.
+_LINES = "_lines_of_configuration"
+
 #: Keys of [system] and their default values.
 _SYSTEM = {
     "contact": None,
@@ -93,7 +96,7 @@ def configuration(
     do settings that the function does not use
     """
     most = float("inf") if matrices else _MOST_VALUES
-    lines = [f"title = {quoted(title)}", "", "[system]", *_system_lines(system, matrices), ""]
+    lines = [f"title = {quoted(title)}", "", "[system]", *_kept_system_lines(system, matrices), ""]
     if units is not None:
         lines += ["[units]", *(f"{key} = {quoted(text)}" for key, text in units.given.items()), ""]
     lines.append("[grid]")
@@ -128,6 +131,17 @@ def _axis_line(name: str, values: np.ndarray, most: float) -> str:
     if num > most:
         return f"# {name} = {num} values from {start!r} to {stop!r}, those of the axis {name}"
     return f"{name} = {value_text(values.tolist())}"
+
+
+def _kept_system_lines(system: "System", matrices: str) -> list[str]:
+    """The table [system]; without a file it is kept with the system, which does not change."""
+    if matrices:
+        return _system_lines(system, matrices)
+    kept = vars(system)
+    if _LINES not in kept:
+        kept[_LINES] = _system_lines(system, "")
+    found: list[str] = kept[_LINES]
+    return found
 
 
 def system_text(system: "System") -> str:

@@ -243,7 +243,8 @@ def merged(solver: Solver | None, settings: Mapping[str, object]) -> Solver:
         if name not in names:
             hint = checks.nearest(name, names)
             raise InputError(f"unknown setting {name!r}{hint}; valid: {', '.join(names)}")
-    return replace(solver or _DEFAULT, **settings)  # type: ignore[arg-type]
+    found = solver or _DEFAULT
+    return replace(found, **settings) if settings else found  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)

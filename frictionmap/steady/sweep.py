@@ -132,15 +132,16 @@ def swept(
     grid = checked_axes(*given, system.n if "amplitude" in solver.outputs else 1, scales)
     (variations or system).costs(grid["r"])
     if variations is None:
-        ds = regime_map(system, grid, solver, threads, progress, watch)
+        engine = engine_of(system)
+        ds = engine.map(grid, solver, threads, progress, watch)
     else:
         checks.cells(grid["mu"].size, grid["r"].size, grid["beta"].size, points=variations.count)
         ds = _study(variations, grid, solver, threads, progress, watch)
-    first = system if variations is None else variations.at(next(variations.points()))
+        engine = engine_of(variations.at(next(variations.points())))
     comment = ds.attrs.get("comment")
-    asked = "status" in solver.outputs or engine_of(first).states_status
-    if not asked and not ds["status"].values.any():
-        ds = ds.drop_vars("status")  # kept where any cell is unresolved or averaged
+    asked = "status" in solver.outputs or engine.states_status
+    if not asked and not ds.variables["status"].values.any():
+        del ds["status"]  # kept where any cell is unresolved or averaged; a copy would take longer
     title = "Motion regimes and stops per cycle"
     ds = stamp(
         ds,

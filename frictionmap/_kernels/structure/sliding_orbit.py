@@ -12,8 +12,8 @@ from ..continuous_motion import since_maximum
 from .oscillators import YC, YS, padded
 from .state import DAMPING, LOAD, LOAD_RATE, PUSH, SPEED, SPEED_RATE, W
 
-#: Intervals of half a period that a table holds at once; if fewer are asked for, up to so many times as many
-#: are taken, because the bounds tighten with the square of their length.
+#: Intervals of half a period that a table holds at once; and the factor by which their number is raised where
+#: it remains below that, because the bounds tighten with the square of their length.
 _CHUNK, _TIGHTER = 8192, 3.0
 
 #: Rows of a wave: at its nodes cosine and sine of the time since the maximum, and what unit friction adds to

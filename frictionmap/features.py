@@ -68,6 +68,21 @@ def peak_thresholds(system: System) -> np.ndarray:
     (pi/4)|lambda_i/chi_i| without damping; with damping T(7.62), which is approximate.  Infinite for a mode
     that does not participate; NaN for a mode that C couples to others.
 
+    Parameters
+    ----------
+    system : System
+        With one rigid contact under one harmonic load.
+
+    Returns
+    -------
+    array, shape (n,)
+        Friction over load amplitude [-], mode by mode.
+
+    Raises
+    ------
+    InputError
+        An argument is out of range, or the system has other contacts or loads.
+
     Examples
     --------
     Without damping the peak of one mass is infinite below beta = pi/4, as Den Hartog found:
@@ -94,6 +109,23 @@ def peak_amplitudes(system: System, beta: float) -> np.ndarray:
     It decreases linearly with beta, to 0 at the `peak_thresholds` of the mode; at and above it the motion is
     not continuous and the value is NaN.  Infinite without damping; NaN for a mode that C couples to others.
 
+    Parameters
+    ----------
+    system : System
+        With one rigid contact under one harmonic load.
+    beta : float
+        Friction over load amplitude [-], >= 0.
+
+    Returns
+    -------
+    array, shape (n, n)
+        Amplitudes over P/k1 (Y), >= 0: rows are masses, columns modes in the order of their frequencies.
+
+    Raises
+    ------
+    InputError
+        An argument is out of range, or the system has other contacts or loads.
+
     Examples
     --------
     Without friction the amplitude at resonance is 1/(2 zeta):
@@ -118,6 +150,23 @@ def high_frequency_limits(system: System, mu: float = 1.0) -> HighFrequency:
 
     Zero if the load does not act on a mass in contact.  With a joined base-wall they grow with r^2, with
     dashpots to the base with r.
+
+    Parameters
+    ----------
+    system : System
+        With one rigid contact under one harmonic load.
+    mu : float
+        Static over kinetic friction [-], >= 1.
+
+    Returns
+    -------
+    HighFrequency
+        Both boundaries, friction over load amplitude [-].
+
+    Raises
+    ------
+    InputError
+        An argument is out of range, or the system has other contacts or loads.
 
     Examples
     --------
@@ -145,6 +194,23 @@ def quasi_static_displacement(system: System, beta: float) -> np.ndarray:
 
     They are the displacements at tau = 0, where the load equals the real part of its phasor, with the contact
     sliding towards larger z.  The contact sticks instead unless beta is below beta_stick at r = 0.
+
+    Parameters
+    ----------
+    system : System
+        With one rigid contact under one harmonic load.
+    beta : float
+        Friction over load amplitude [-], >= 0.
+
+    Returns
+    -------
+    array, shape (n,)
+        Displacements of the masses over P/k1 (Y).
+
+    Raises
+    ------
+    InputError
+        An argument is out of range, or the system has other contacts or loads.
 
     Examples
     --------
@@ -227,6 +293,25 @@ def invariant_points(system: System, low: float, high: float, most: int = MOST_P
     found: between two of its poles U falls from +inf to -inf once.  With damping only the phase is unchanged.
     Of more than about `most` points the highest are returned.
 
+    Parameters
+    ----------
+    system : System
+        With one rigid contact under one harmonic load.
+    low, high : float
+        Ends of the range of frequency ratios [-], 0 < low < high.
+    most : int
+        About how many points are returned at most, >= 1.
+
+    Returns
+    -------
+    array, shape (points,)
+        Frequency ratios [-], increasing.
+
+    Raises
+    ------
+    InputError
+        An argument is out of range, or the system has other contacts or loads.
+
     Examples
     --------
     >>> import frictionmap as fm
@@ -249,6 +334,15 @@ def _real_load(modes: ModalModel) -> np.ndarray:
 
 def one_phase(system: System) -> bool:
     """Whether all loads are in phase or in opposition; otherwise no amplitude is invariant.
+
+    Parameters
+    ----------
+    system : System
+        Any; with a load on one mass, or a base that moves, it is true.
+
+    Returns
+    -------
+    bool
 
     Examples
     --------
@@ -324,6 +418,21 @@ def all_mass_invariant_points(
 ) -> list[np.ndarray]:
     """Find the `mass_invariant_points` of every mass, at about the cost of one mass.
 
+    Parameters
+    ----------
+    system, low, high, most
+        As in `invariant_points`.
+
+    Returns
+    -------
+    list of arrays, one for each mass
+        Frequency ratios [-], increasing.
+
+    Raises
+    ------
+    InputError
+        As in `invariant_points`, or loads have different phases.
+
     Examples
     --------
     >>> import frictionmap as fm
@@ -364,6 +473,23 @@ def mass_invariant_points(
     they are the limits for beta -> 0 of the `inversion_points` of the exact amplitude.  For a mass in contact
     with a fixed wall they are the `invariant_points`.  Damping is neglected: with damping the points are
     approximate, T 7.4.3.  All loads must be in phase.
+
+    Parameters
+    ----------
+    system, low, high, most
+        As in `invariant_points`.
+    mass : int or str
+        The mass, counted from 1, or its name.
+
+    Returns
+    -------
+    array, shape (points,)
+        Frequency ratios [-], increasing.
+
+    Raises
+    ------
+    InputError
+        As in `invariant_points`, there is no such mass, or loads have different phases.
 
     Examples
     --------
@@ -410,6 +536,20 @@ def first_harmonic_points(
     abs(X_k1)^2 = V_k^2 + (8 beta^2/pi) A_k (V_k U/V + 2 A_k/pi) for every beta: where the bracket is zero,
     the amplitude is unchanged.  Damping is neglected; all loads must be in phase.
 
+    Parameters
+    ----------
+    system, low, high, most
+        As in `invariant_points`.
+
+    Returns
+    -------
+    list of FirstHarmonicPoints, n + 1 of them
+
+    Raises
+    ------
+    InputError
+        As in `invariant_points`, or loads have different phases.
+
     Examples
     --------
     Points of mass 1, of mass 2 and of the contact where amplitude and phase are unchanged:
@@ -446,6 +586,23 @@ def first_harmonic_invariant_points(
     system: System, mass: int, low: float, high: float, most: int = MOST_POINTS
 ) -> np.ndarray:
     """All `first_harmonic_points` of one mass, the inversion points of frequency-based curves of T 4.4.
+
+    Parameters
+    ----------
+    system, low, high, most
+        As in `invariant_points`.
+    mass : int or str
+        The mass, counted from 1, or its name.
+
+    Returns
+    -------
+    array, shape (points,)
+        Frequency ratios [-], increasing.
+
+    Raises
+    ------
+    InputError
+        As in `invariant_points`, there is no such mass, or loads have different phases.
 
     Examples
     --------

@@ -34,6 +34,9 @@ _LENGTHS = _FORCES.replace("friction_force", "x_F")
 #: Beginnings of the names of results that are listed in any case.
 _ALWAYS = ("x_F", "spring_stiffness")
 
+#: End of the name of a standard error.
+_ERROR = "_standard_error"
+
 #: Quantile of a normal deviate for 95 %.
 _NORMAL = 1.96
 
@@ -106,15 +109,28 @@ def _table(ds: xr.Dataset) -> list[str]:
 
 
 def _further(ds: xr.Dataset, verbose: bool) -> list[str]:
-    """Results beside the parameters: all, or lengths F/k and stiffnesses of contacts only."""
+    """Results beside the parameters: all, or lengths F/k and stiffnesses that the result does not state.
+
+    Standard errors stand beside their values.
+    """
     shown = {*_SHOWN_ELSEWHERE, *ds["parameter"].values.tolist()}
-    singles = [name for name in ds.data_vars if name not in shown and _is_number(ds[name])]
+    singles = [name for name in _numbers(ds) if name not in shown]
     if not verbose:
-        singles = [name for name in singles if str(name).startswith(_ALWAYS)]
-    return [
-        f"{name}  {float(ds[name]):.5g} {unit_in_words(ds[name].attrs.get('units', '1'))}".rstrip()
-        for name in singles
-    ]
+        stated = _lengths_in_result(ds)
+        singles = [name for name in singles if name.startswith(_ALWAYS) and name not in stated]
+    return [_beside_parameters(ds, name) for name in singles if not _is_error(ds, name)]
+
+
+def _is_error(ds: xr.Dataset, name: str) -> bool:
+    """Whether a number is the standard error of another one."""
+    return name.endswith(_ERROR) and name.removesuffix(_ERROR) in ds
+
+
+def _beside_parameters(ds: xr.Dataset, name: str) -> str:
+    """A number beside the parameters, with its standard error if that is known."""
+    text = f"{name}  {float(ds[name]):.5g} {_unit_of(ds, name)}".rstrip()
+    error = _error_of(ds, name)
+    return text if np.isnan(error) else f"{text} (std. error {error:.2g})"
 
 
 def result_in_words(ds: xr.Dataset) -> str:
@@ -137,42 +153,46 @@ def _friction(ds: xr.Dataset) -> Iterator[str]:
     Without any of them it is the frequencies.
     """
     names = [str(name) for name in ds["parameter"].values]
-    numbers = [str(name) for name in ds.data_vars if _is_number(ds[name])]
-    forces = [name for name in numbers if re.fullmatch(_FORCES, name)]
-    if forces:
-        for name in forces:
-            label = name.removeprefix("friction_force")
-            length = f"x_F{label}"
-            unit = unit_in_words(ds[name].attrs.get("units", "1"))
-            if length in names and float(ds["estimate"].sel(parameter=length)) > 0.0:
-                factor = float(ds[name]) / float(ds["estimate"].sel(parameter=length))
-                yield _with_interval(f"F{label}", ds.sel(parameter=length), unit, factor)
-            else:
-                yield _with_error(ds, name, f"F{label}")
-        return
-    lengths = [name for name in numbers if re.fullmatch(_LENGTHS, name)]
-    if lengths and "x_F" not in names:
-        for name in lengths:
-            yield _with_error(ds, name, name)
+    forces = _forces(ds)
+    for name in forces:
+        label = name.removeprefix("friction_force")
+        length = f"x_F{label}"
+        if length in names and float(ds["estimate"].sel(parameter=length)) > 0.0:
+            factor = float(ds[name]) / float(ds["estimate"].sel(parameter=length))
+            yield _with_interval(f"F{label}", ds.sel(parameter=length), _unit_of(ds, name), factor)
+        else:
+            yield _with_error(ds, name, f"F{label}")
+    lengths = _lengths_in_result(ds)
+    for name in lengths:
+        yield _with_error(ds, name, name)
+    if forces or lengths:
         return
     for pattern, symbol in _HEADLINES:
         chosen = [name for name in names if re.fullmatch(pattern, name)]
+        for name in chosen:
+            yield _with_interval(symbol or name, ds.sel(parameter=name), _unit_of(ds, name))
         if chosen:
-            for name in chosen:
-                one = ds.sel(parameter=name)
-                unit = unit_in_words(str(one["unit"].values))
-                yield _with_interval(symbol or name, one, unit)
             return
 
 
+def _forces(ds: xr.Dataset) -> list[str]:
+    """Names of the friction forces beside the parameters."""
+    return [name for name in _numbers(ds) if re.fullmatch(_FORCES, name)]
+
+
+def _lengths_in_result(ds: xr.Dataset) -> list[str]:
+    """Names of the lengths F/k beside the parameters that stand in the result, in the place of forces."""
+    if _forces(ds) or "x_F" in ds["parameter"].values:
+        return []
+    return [name for name in _numbers(ds) if re.fullmatch(_LENGTHS, name)]
+
+
 def _with_error(ds: xr.Dataset, name: str, symbol: str) -> str:
-    """A number beside the parameters, with its 95 % interval if its standard error is there."""
-    unit, error = unit_in_words(ds[name].attrs.get("units", "1")), f"{name}_standard_error"
-    if error not in ds or not _is_number(ds[error]):
-        return f"{symbol} = {float(ds[name]):.4g} {unit}".rstrip()
-    return (
-        f"{symbol} = {_rounded_to(float(ds[name]), _NORMAL * float(ds[error]))} {unit}".rstrip() + " (95 %)"
-    )
+    """A number beside the parameters, with its 95 % interval if its standard error is known."""
+    value, unit, error = float(ds[name]), _unit_of(ds, name), _error_of(ds, name)
+    if np.isnan(error):
+        return f"{symbol} = {value:.4g} {unit}".rstrip()
+    return f"{symbol} = {_rounded_to(value, _NORMAL * error)} {unit}".rstrip() + " (95 %)"
 
 
 def _with_interval(name: str, one: xr.Dataset, unit: str, factor: float = 1.0) -> str:
@@ -201,16 +221,15 @@ def _missing(ds: xr.Dataset) -> list[str]:
     lengths = [name for name in names if re.fullmatch(r"x_F(_(?!standard)\w+)?", name)]
     if not lengths or any(name.startswith("friction_force") for name in names) or "stiffness" in names:
         return []
-    if not all(_unit_of(ds, name) == "mm" for name in lengths if not name.endswith("_standard_error")):
+    if not all(_unit_of(ds, name) == "mm" for name in lengths if not name.endswith(_ERROR)):
         return []
     return ["known.stiffness (N/m) is missing: with it the friction force F = k x_F is stated in newtons"]
 
 
 def _unit_of(ds: xr.Dataset, name: str) -> str:
-    """Unit of a parameter, or of a number beside them."""
-    if name in ds.data_vars:
-        return str(ds[name].attrs.get("units", "1"))
-    return str(ds["unit"].sel(parameter=name).values)
+    """Unit of a parameter, or of a number beside them; empty for a pure number."""
+    own = ds[name].attrs.get("units", "1") if name in ds.data_vars else ds["unit"].sel(parameter=name).values
+    return unit_in_words(str(own))
 
 
 def _row(one: xr.Dataset) -> tuple[str, str, str, str, str]:
@@ -225,8 +244,14 @@ def _row(one: xr.Dataset) -> tuple[str, str, str, str, str]:
     return name, f"{float(one['estimate']):.6g}", shown, interval, unit
 
 
-def _is_number(variable: xr.DataArray) -> bool:
-    return variable.ndim == 0 and variable.dtype.kind in "iuf"
+def _numbers(ds: xr.Dataset) -> list[str]:
+    """Names of the single numbers beside the parameters."""
+    return [str(name) for name, one in ds.data_vars.items() if one.ndim == 0 and one.dtype.kind in "iuf"]
+
+
+def _error_of(ds: xr.Dataset, name: str) -> float:
+    """Standard error of a number beside the parameters; NaN if it is not known."""
+    return float(ds[f"{name}{_ERROR}"]) if f"{name}{_ERROR}" in _numbers(ds) else np.nan
 
 
 def unit_in_words(unit: object) -> str:

@@ -158,7 +158,7 @@ def added(outcome: Outcome[Tried], causes: list[Cause]) -> str:
     """Words about what was added to a model, to be put after others; empty if nothing was."""
     if not outcome.chosen.name:
         return ""
-    return f": the model explains the data with {_describe(causes[0])}, and without it does not"
+    return f": the model explains the data with {_describe(causes[0])}, but not without it"
 
 
 def doubts(outcome: Outcome[Tried], causes: list[Cause]) -> dict[str, str]:
@@ -186,8 +186,8 @@ def _otherwise(causes: list[Cause]) -> str:
     remedies = [f"hold {name} in known or list it in free" for name in new]
     remedies += [f"correct {name} in known or leave it out" for name in held]
     return (
-        f"the model does not explain the data, it does with {with_them}{several}: the estimates must not be "
-        f"used, find out what is true and {', or '.join(remedies)}"
+        f"the model explains the data only with {with_them}{several}. The estimates must not be used. Find "
+        f"out what is true, and {', or '.join(remedies)}."
     )
 
 
@@ -195,7 +195,8 @@ def _unexplained(outcome: Outcome[Tried]) -> str:
     """Words about a model that does not explain the data, whatever is added to it."""
     tried = [ADDED[one.name] for one in outcome.failed if one.name in ADDED]
     tried += [f"another {one.name}" for one in outcome.failed if one.name not in ADDED]
+    even = f", not even with {' or '.join(tried)}" if tried else ""
     return (
-        f"the model does not explain the data, and neither does it with {' or '.join(tried)}: the estimates "
-        "must not be used, check the channels, the contact and what the damper acts on"
+        f"the model does not explain the data{even}. The estimates must not be used. Check the channels, the "
+        "contact and what the damper acts on."
     )

@@ -71,7 +71,7 @@ def test_a_late_channel_is_named_in_the_report_and_can_be_held(rig, capsys, meas
     assert main(["identify", str(path)]) == 0
     out = capsys.readouterr().out
     assert "the model explains the data with a delay between the channels (delay 0.0" in out
-    assert "and without it does not" in out
+    assert "but not without it" in out
     row = next(line.split() for line in out.splitlines() if line.split()[:1] == ["delay"])
     assert float(row[1]) == pytest.approx(0.02, abs=0.001)
     assert row[-1] == "s"

@@ -178,11 +178,11 @@ def _fit(data: Measured, held: np.ndarray, names: tuple[str, ...], given: bool, 
 
 def _verdict(fit: _Fit) -> xr.Variable:
     n = fit.data.n
-    found = f"{WORDS[n - 1]} natural frequenc{'ies' if n > 1 else 'y'} found"
-    words = f"{found}, and the one between them" if n == 2 else found
+    chain = f"a chain of {WORDS[n - 1]} masses" if n > 1 else "one mass on a spring"
+    within = "to within their errors" if fit.given else "with errors from the residuals"
     meanings = {
-        f"{WORDS[n - 1]}_frequenc{'ies' if n > 1 else 'y'}_found": words,
-        "scatter_beyond_errors": f"{found}, but residuals are larger than the errors given",
+        f"{WORDS[n - 1]}_frequenc{'ies' if n > 1 else 'y'}_found": f"{chain} explains the data, {within}",
+        "scatter_beyond_errors": f"{chain} fits, but residuals exceed the errors given",
     }
     best = fit.found.best
     freedom = best.residual.size - int(fit.problem.free.sum())

@@ -51,7 +51,10 @@ def _scatter(table: ForcedTable, fit: TableFit) -> list[str]:
     freedom = fit.solution.residual.size - int(fit.problem.free.sum())
     if not is_beyond_chance(table, fit.solution.sum, freedom):
         return []
-    return [f"residuals are larger than the errors given: reduced chi square {fit.errors.variance:.3g}"]
+    return [
+        f"residuals are larger than the errors given (reduced chi square {fit.errors.variance:.3g}): check "
+        "sigma_phase_deg and sigma_amplitude, and look at the residuals with frictionmap plot"
+    ]
 
 
 def _near_sticking(fit: TableFit) -> list[str]:

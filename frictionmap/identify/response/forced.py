@@ -250,7 +250,8 @@ def _reachable(
         return table
     if not drop:
         refuse_impossible(table, system, f_n, int(wrong[0]))
-    warnings.append(f"{wrong.size} lags that no friction ratio gives were ignored")
+    lags = f"{wrong.size} lag{'s' * (wrong.size != 1)}"
+    warnings.append(f"{lags} ignored: no friction ratio gives such a lag")
     return without(table, wrong)
 
 

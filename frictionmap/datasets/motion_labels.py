@@ -186,6 +186,12 @@ def _average(of: str, end: str) -> Label:
 
 MOTIONS |= {f"{of}_{end}": _average(of, end) for of in AVERAGED for end in AVERAGES}
 
+#: Meaning of `drive` where all records are forces, or move the base.
+DRIVES = {
+    "force": "the record: a force, over P",
+    "base": "the record: acceleration of the base, over omega_1^2 P/k1",
+}
+
 #: Variables with one value per contact: the dimension `contact` stands before `time`, if there are several.
 OF_CONTACTS = (
     "z", "friction", "direction", "y", "contact_amplitude", "friction_amplitude", "contact_amplitude_time",

@@ -86,10 +86,15 @@ def ones_of(ds: xr.Dataset) -> dict[str, float]:
     return ones
 
 
+#: What 1 is of each ratio, over frequency, and of motions in time or without a load, which have no r.
+_ONES = {"frequency": "r = 1 is", "force": "beta = 1 is", "length": "an amplitude of 1 is"}
+_ONES_WITHOUT_R = _ONES | {"frequency": "omega_1/(2 pi) is", "length": "a displacement of 1 is"}
+
+
 def describe_scales(ds: xr.Dataset) -> str:
     """Describe the reference values of a dataset; empty if it has no units."""
-    said = {"frequency": "r = 1 is", "force": "beta = 1 is", "length": "an amplitude of 1 is"}
-    parts = []
+    over_r = kind(ds) not in ("history", "spectrum", "belt") and ds.attrs.get("excitation") != "none"
+    said, parts = _ONES if over_r else _ONES_WITHOUT_R, []
     for measure, name in SCALES.items():
         if name in ds.attrs:
             unit = handy_unit(float(ds.attrs[name]), measure)

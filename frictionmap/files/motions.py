@@ -178,7 +178,7 @@ def rows_of_motion(one: xr.Dataset) -> Iterator[tuple[str, str]]:
         if name in one and np.isfinite(one[name].values).any():
             yield words, _measured(one, name, measure, unit)
     if "beta_hold" in one and np.isfinite(one["beta_hold"].values).any():
-        yield "nothing moves from friction", _measured(one, "beta_hold", "force", "N")
+        yield "friction that holds everything", _measured(one, "beta_hold", "force", "N")
     for name, words in (("x", "displacement"), ("acceleration", "absolute acceleration")):
         if f"{name}_mean" in one:
             yield from _averages(one, name, words)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from .. import checks
 from ..datasets.labels import REFERENCES, SCALES, attributes
-from ..datasets.motion_labels import IN_SI, MOTIONS, OF_CONTACTS, SI_LABELS, TIMES, si_name
+from ..datasets.motion_labels import DRIVES, IN_SI, MOTIONS, OF_CONTACTS, SI_LABELS, TIMES, si_name
 from ..datasets.provenance import excitation_of, now
 from ..errors import InputError
 from ..general.dataset import refuse_static
@@ -469,12 +469,19 @@ def _labelled(
             fill = 0.0 if name == "direction" else np.nan
             stacked = _stacked([trace[name] for trace in traces], grid.shape, fill)
             variables[name] = _variable(name, stacked, contacts)
+        variables["drive"].attrs["long_name"] = _drive_words(grid.records)
     variables |= _events([one for _, one in ones], grid.shape)
     hold = np.full(grid.shape[:3], np.nan)
     if followed.hold is not None:
         hold = _hold(structure, grid, followed.hold)
     variables["beta_hold"] = xr.Variable(MOTIONS["beta_hold"].dims, hold, attributes(MOTIONS["beta_hold"]))
     return variables, coords
+
+
+def _drive_words(records: Sequence[Record]) -> str:
+    """What the records are: forces, or accelerations of the base; both if there are both."""
+    found = {DRIVES["force" if one.quantity == "force" else "base"] for one in records}
+    return found.pop() if len(found) == 1 else MOTIONS["drive"].long_name
 
 
 def _events(ones: list[Found], shape: tuple[int, ...]) -> dict[str, xr.Variable]:

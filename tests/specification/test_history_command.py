@@ -42,7 +42,7 @@ def _here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-def test_history_of_a_suite():
+def test_history_of_a_suite(capsys):
     assert main(["history", str(MOTIONS / "brace-frame.toml"), *FEW]) == 0
     with xr.open_dataset("brace-frame-history.nc") as ds:
         assert ds.sizes["record"] == 2
@@ -52,6 +52,9 @@ def test_history_of_a_suite():
         assert (ds.status == 0).all()
     assert main(["plot", "brace-frame-history.nc"]) == 0
     assert main(["info", "brace-frame-history.nc"]) == 0
+    said = capsys.readouterr().out
+    assert "omega_1/(2 pi) is 1.5 Hz" in said  # there is no r
+    assert "r = 1" not in said
     assert main(["export", "brace-frame-history.nc", "-o", "suite.csv"]) == 0
 
 

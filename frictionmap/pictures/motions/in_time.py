@@ -10,7 +10,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...datasets.labels import SCALES
-from ...datasets.motion_labels import CELL, axes_of_motions, spans, stuck_times
+from ...datasets.motion_labels import CELL, DRIVES, axes_of_motions, spans, stuck_times
+from ...datasets.physical import ones_of
 from ...errors import InputError
 from ...units.table import UNITS, handy_unit
 from ..drawing import with_options
@@ -135,10 +136,25 @@ def time_words(ds: xr.Dataset) -> str:
 def draw_record(ax: Axes, ds: xr.Dataset) -> None:
     """Draw the record of a motion over time, with its states shaded."""
     time = ds["time"].values
-    ax.plot(time, ds["drive"].values, color="black", linewidth=0.8)
-    ax.set_ylabel("record")
+    values, label = _record_with_label(ds)
+    ax.plot(time, values, color="black", linewidth=0.8)
+    ax.set_ylabel(label)
     ax.margins(x=0.0)
     _shade(ax, ds)
+
+
+def _record_with_label(ds: xr.Dataset) -> tuple[np.ndarray, str]:
+    """The record, in units where they are known, and the name of its axis."""
+    values, ones = ds["drive"].values, ones_of(ds)
+    what = str(ds["drive"].attrs.get("long_name", ""))
+    if what == DRIVES["force"]:
+        values, unit = _handy(values * ones["force"], "force") if "force" in ones else (values, " / $P$")
+        return values, f"load{unit}"
+    if what != DRIVES["base"]:
+        return values, "record"
+    if "acceleration" in ones:
+        return values * ones["acceleration"], "base\nacceleration [m/s²]"
+    return values, "base acceleration\n" + r"/ $(\omega_1^2 P/k_1)$"
 
 
 def _draw_traces(axes: "AxesArray", ds: xr.Dataset) -> list[Handle]:
@@ -146,13 +162,11 @@ def _draw_traces(axes: "AxesArray", ds: xr.Dataset) -> list[Handle]:
     time = ds["time"].values
     draw_record(axes[0], ds)
     x, length = values_in_si(ds, "x", "m", "m")
-    if length:
-        x, length = _handy(x, "length")
+    x, length = _handy(x, "length") if length else (x, " / $(P/k_1)$")
     handles = _draw_rows(axes[1], time, x, "mass")
     axes[1].set_ylabel(f"displacement{length}")
     force, newton = values_in_si(ds, "friction", "N", "N")
-    if newton:
-        force, newton = _handy(force, "force")
+    force, newton = _handy(force, "force") if newton else (force, " / $P$")
     handles += _draw_rows(axes[2], time, force, "contact")
     axes[2].set_ylabel(f"contact force{newton}")
     axes[2].set_xlabel(time_words(ds))
@@ -263,7 +277,7 @@ def plot_history(
     >>> ds = fm.history(fm.System(), pulse, beta=[0.2])
     >>> axes = fm.plot_history(ds)
     >>> [ax.get_ylabel() for ax in axes.flat]
-    ['record', 'displacement', 'contact force']
+    ['load / $P$', 'displacement / $(P/k_1)$', 'contact force / $P$']
     """
     ds = of_one_system(to_draw(ds, "plot_history", "history"))
     single = _is_single(ds) and "time" in ds.dims

@@ -1,7 +1,7 @@
 """Numbers of answers to design questions in words: rounded, in units where the reference values are known."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 from typing import TYPE_CHECKING
 
@@ -24,6 +24,9 @@ _ACCURACY = 1e-9
 #: Numbers below this are written without an exponent.
 _LARGE = 1e6
 
+#: The response that is a share, not a length or a force.
+SHARE_LOST = "loss of normal force over the preload"
+
 
 def rounded(value: float, towards: str = NEAREST, digits: int = _DIGITS) -> str:
     """Format a number with a few significant digits; a bound is rounded to the side on which it holds."""
@@ -33,6 +36,12 @@ def rounded(value: float, towards: str = NEAREST, digits: int = _DIGITS) -> str:
     exact = Decimal(value + slack * abs(value))
     found = float(exact.quantize(Decimal(1).scaleb(exact.adjusted() + 1 - digits), rounding=towards))
     return f"{found:.0f}" if 10.0**digits <= abs(found) < _LARGE else f"{found:.{digits}g}"
+
+
+def per_cycle(numbers: Iterable[float], what: str) -> str:
+    """How many stops or slips there are per cycle, of every contact; `what`: their plural."""
+    listed = ", ".join(f"{number:.4g}" for number in numbers)
+    return f"{listed} {what.removesuffix('s') if listed == '1' else what} per cycle"
 
 
 class Amounts:
@@ -47,8 +56,8 @@ class Amounts:
 
     def __init__(self, ones: Mapping[str, float], response: str, of_base: bool = False) -> None:
         self._ones, self._response = ones, response
-        self._measure = "force" if response == "transmitted force" else "length"
-        self._over = "P" if self._measure == "force" else ("Y" if of_base else "P/k1")
+        measures = {"transmitted force": ("force", "P"), SHARE_LOST: ("", "")}
+        self._measure, self._over = measures.get(response, ("length", "Y" if of_base else "P/k1"))
 
     def _with_unit(
         self, ratio: float, measure: str, towards: str, digits: int, like: float | None = None
@@ -96,10 +105,10 @@ class Amounts:
     def response(self, size: float, towards: str = NEAREST, digits: int = _DIGITS) -> str:
         """A response; a bound from above is rounded up."""
         if not math.isfinite(size):
-            return "infinite"
+            return "infinite" if math.isinf(size) else "not known"
         if self._measure in self._ones:
             return self._with_unit(size, self._measure, towards, digits)
-        return f"{rounded(size, towards, digits)} {self._over}"
+        return f"{rounded(size, towards, digits)} {self._over}".rstrip()
 
     def band(self, low: float, high: float) -> str:
         """A band by its ends, after a sentence."""

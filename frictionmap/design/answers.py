@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..datasets.amounts import DOWN, amounts_by
 from ..datasets.design_labels import answer_axes, answer_labels
 from ..datasets.labels import attributes
 from ..datasets.physical import scale_attributes
@@ -88,7 +89,7 @@ def answer(
         units=units,
     )
     ds.attrs["config"] += _table_text(question, {"band": [band.low, band.high], **asked})
-    caution = _not_unique(question, values)
+    caution = _not_unique(question, values, scales)
     ds.attrs |= {"warnings": caution} if caution else {}
     return ds.assign_attrs(scale_attributes(scales), response=_response_in_words(asked))
 
@@ -120,14 +121,15 @@ def _with_unique(system: System, values: Mapping[str, Any]) -> dict[str, Any]:
     return {**values, **unique}
 
 
-def _not_unique(question: str, values: Mapping[str, Any]) -> str:
+def _not_unique(question: str, values: Mapping[str, Any], scales: Scales) -> str:
     """What an answer does not prove where friction falls with the speed, in words; empty if it is proved."""
     unique, beta = values.get("beta_unique", np.inf), values["beta"]
     most = max([beta * (1.0 + values.get("spread", 0.0)), *values.get("interval_end", ())])
     rests = beta >= values.get("beta_stuck", np.inf)
     if question == "stuck" or rests or most <= unique:
         return ""
-    words = f"above beta = {unique:.6g} the steady state is not proved to be the same from every start"
+    begin = amounts_by(scales, "", False).friction(unique, DOWN)
+    words = f"above {begin} the steady state is not proved to be the same from every start"
     if not record(question).of_response:
         return words
     return f"{words}, and the larger response of those from rest and from a large sliding motion counts"
@@ -179,7 +181,7 @@ def peaks_answer(
     }  # fmt: skip
     keys = {"response": task.response.as_config(), "mu": task.mu, "beta": [task.low, task.high], **asked}
     ds = answer(question, task.system, task.band, found, keys, task.units, task.scales, study)
-    caution = irregular_cells(curve, best.beta)
+    caution = irregular_cells(task.amounts, curve, best.beta)
     cautions = [words for words in (ds.attrs.get("warnings", ""), caution) if words]
     return ds.assign_attrs(warnings="; ".join(cautions)) if cautions else ds
 

@@ -50,7 +50,8 @@ def load_design(path: str | Path, overrides: Sequence[str] = (), threads: int | 
     path = Path(path)
     common = common_tables(tree, path, [*_wanted(tree), *wanted_axes(tree.get("axes", {}))])
     if "design" not in tree:
-        raise InputError("the configuration must have a table [design]; got none")
+        of_records = "; under records use fm.design.least_median in Python" if "record" in tree else ""
+        raise InputError(f"the configuration must have a table [design]; got none{of_records}")
     files = put_variants(tree.get("axes"), path.parent)
     scales = scales_of(common.units, common.system)
     scales.require(_wanted(tree))

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..datasets.amounts import DIGITS, Amounts
 from ..errors import InputError, NoSteadyState
 from .extremes import Brackets, brackets_of, refine_maxima
 from .limits import starts_matter
@@ -79,8 +80,8 @@ def sampled(task: Task, curve: PerformanceCurve) -> Points:
     if not points.size.any() and task.low >= curve.stuck.beta > 0.0:
         raise InputError(
             "beta",
-            f"must begin below {curve.stuck.beta:.6g}, at or above which the {task.response.describe()} "
-            f"is 0 over the whole band; got {task.low:g}",
+            f"must begin below {task.amounts.friction(curve.stuck.beta, digits=DIGITS)}, at or above which "
+            f"the {task.response.describe()} is 0 over the whole band; got {task.amounts.friction(task.low)}",
         )
     if not points.size.any():
         raise InputError(
@@ -136,7 +137,7 @@ def _index(points: Points, beta: float) -> int:
     return int(np.searchsorted(points.beta, beta))
 
 
-def _refuse_unknown(curve: PerformanceCurve, best: Minimum, low: float, high: float) -> None:
+def _refuse_unknown(task: Task, curve: PerformanceCurve, best: Minimum, low: float, high: float) -> None:
     """Refuse an optimum with a cell that may be above its peak, or next to friction that may be better.
 
     Cells that are not known at friction ratios next to it are looked at with the friction of the optimum.
@@ -146,33 +147,35 @@ def _refuse_unknown(curve: PerformanceCurve, best: Minimum, low: float, high: fl
     own = {best.beta: curve.unknown[best.beta]} if best.beta in curve.unknown else {}
     better = {beta: cells for beta, cells in near.items() if cells.peak < best.size}
     for beta, cells in (own | better).items():
-        _refuse(beta, cells, best)
+        _refuse(task.amounts, beta, cells, best)
 
 
-def _refuse(beta: float, cells: Unclear, best: Minimum) -> None:
+def _refuse(words: Amounts, beta: float, cells: Unclear, best: Minimum) -> None:
     raise NoSteadyState(
-        f"cannot answer: {describe_cells(beta, cells)}, next to the optimum with the peak {best.size:.6g}; "
-        f"narrow the band or the range of beta, or add damping"
+        f"cannot answer: {describe_cells(words, beta, cells)}, next to the optimum with the peak "
+        f"{words.response(best.size, digits=DIGITS)}; narrow the band or the range of beta, or add damping"
     )
 
 
-def describe_cells(beta: float, cells: Unclear) -> str:
+def describe_cells(words: Amounts, beta: float, cells: Unclear) -> str:
     """Cells at a friction ratio without a periodic steady state, in words."""
     counted = "1 cell of the band has" if cells.number == 1 else f"{cells.number} cells of the band have"
-    found = f"{counted} no periodic steady state at beta = {beta:.6g}"
+    found = f"{counted} no periodic steady state at {words.friction(beta, digits=DIGITS)}"
+    at = words.frequency(cells.r, digits=DIGITS)
     if np.isnan(cells.seen):
-        return f"{found} (r = {cells.r:.6g})"
-    return f"{found} (r = {cells.r:.6g}: largest response seen {cells.seen:.6g})"
+        return f"{found} ({at})"
+    return f"{found} ({at}: largest response seen {words.response(cells.seen, digits=DIGITS)})"
 
 
-def irregular_cells(curve: PerformanceCurve, beta: float) -> str:
+def irregular_cells(words: Amounts, curve: PerformanceCurve, beta: float) -> str:
     """The irregular cells next to a friction ratio that were left out, in words; empty without any."""
     if not curve.harmless:
         return ""
     nearest = min(curve.harmless, key=lambda known: abs(known - beta))
     count = len(curve.harmless) - 1
     others = f", as are those at {count} other friction ratios" if count else ""
-    return f"{describe_cells(nearest, curve.harmless[nearest])}: far below the peak, left out{others}"
+    cells = describe_cells(words, nearest, curve.harmless[nearest])
+    return f"{cells}: far below the peak, left out{others}"
 
 
 def _threshold(task: Task, curve: PerformanceCurve, share: float = 1.0) -> tuple[Minimum, Peaks] | None:
@@ -212,7 +215,7 @@ def find_optimum(task: Task, curve: PerformanceCurve) -> Optimum:
     found = [(*_refined(curve, values, points, k), bracket(points, k)) for k in promising]
     found.sort(key=lambda one: one[0].size)
     best, peaks, around = found[0]
-    _refuse_unknown(curve, best, *around)
+    _refuse_unknown(task, curve, best, *around)
     others = [one for one, _, _ in found[1:] if one.size <= _SECOND * best.size]
     return _optimum(curve, points, best, peaks, others[0] if others else None)
 
@@ -299,7 +302,7 @@ def find_robust(task: Task, curve: PerformanceCurve, spread: float) -> Optimum:
     best = min((_refined_robust(worst, robust, k) for k in local_minima(robust)), key=lambda one: one.size)
     for level, cells in curve.unknown.items():
         if best.beta * (1.0 - spread) <= level <= best.beta * (1.0 + spread):
-            _refuse(level, cells, best)
+            _refuse(task.amounts, level, cells, best)
     if best.kind == THRESHOLD:
         return with_worst(_optimum(curve, points, best, _at_rest(best.beta)))
     ends = curve.whole(best.beta * np.array([1.0 - spread, 1.0 + spread]), all_peaks=True)

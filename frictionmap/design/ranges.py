@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..datasets.amounts import DIGITS, UP, amounts_by
+from ..datasets.amounts import DIGITS, UP
 from ..errors import InputError, NoSteadyState
 from .minimum import Points, changes, crossing
 from .optimum import Optimum, describe_cells, find_optimum, largest
@@ -29,11 +29,10 @@ def find_ranges(
     """
     optimum = find_optimum(task, curve)
     if limit < optimum.best.size:
-        words = amounts_by(task.scales, task.response.describe(), task.system.excitation == "base")
-        least = words.response(optimum.best.size, UP, DIGITS)
+        least = task.amounts.response(optimum.best.size, UP, DIGITS)
         raise InputError(
             "limit",
-            f"must be >= {least}, the least peak, at {words.friction_and_ratio(optimum.best.beta)}; "
+            f"must be >= {least}, the least peak, at {task.amounts.friction_and_ratio(optimum.best.beta)}; "
             f"got {given}",
         )
     points = optimum.points
@@ -41,7 +40,7 @@ def find_ranges(
     def values(beta: np.ndarray) -> np.ndarray:
         return largest(curve.at(beta))
 
-    refuse_unknown(curve, limit)
+    refuse_unknown(task, curve, limit)
     ends = [crossing(values, points, int(k), limit) for k in changes(points, limit)]
     allowed = points.size <= limit
     begins_inside, ends_inside = bool(allowed[0]), bool(allowed[-1])
@@ -52,13 +51,13 @@ def find_ranges(
     return optimum, np.array(ends[0::2]), np.array(ends[1::2])
 
 
-def refuse_unknown(curve: PerformanceCurve, limit: float) -> None:
+def refuse_unknown(task: Task, curve: PerformanceCurve, limit: float) -> None:
     """Refuse a limit that all known responses at some friction keep, but perhaps not those of other cells."""
     for beta, cells in curve.unknown.items():
         if cells.peak <= limit:
             raise NoSteadyState(
-                f"cannot answer: {describe_cells(beta, cells)}, where all others keep the limit; "
-                f"narrow the band or the range of beta, or add damping"
+                f"cannot answer: {describe_cells(task.amounts, beta, cells)}, where all others keep the "
+                "limit; narrow the band or the range of beta, or add damping"
             )
 
 

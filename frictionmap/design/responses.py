@@ -6,9 +6,10 @@ from typing import Any, Literal, NamedTuple, get_args
 import numpy as np
 
 from .. import checks, regimes
+from ..datasets.amounts import SHARE_LOST
 from ..errors import InputError
 from ..model.settings import Solver, Start
-from ..model.sizes import Sizes, Wanted
+from ..model.sizes import SEPARATION, Sizes, Wanted
 from ..model.system import System
 from ..solvers.choose import engine_of
 from .limits import starts_matter, unique_friction
@@ -37,6 +38,8 @@ class Response(NamedTuple):
             return f"displacement in contact {self.contact}"
         if self.quantity == "transmitted_force":
             return "transmitted force"
+        if self.quantity == SEPARATION:
+            return SHARE_LOST
         what = "amplitude" if self.quantity == "amplitude" else "first harmonic"
         return f"{what} of mass {self.mass}"
 

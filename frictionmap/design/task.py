@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import checks
+from ..datasets.amounts import Amounts, amounts_by
 from ..errors import InputError
 from ..features import peak_thresholds
 from ..model.system import System
@@ -52,6 +53,11 @@ class Task:
     def stuck(self) -> Extreme:
         """The friction ratio that holds over the whole band, whatever the start."""
         return largest_stick(self.system, self.band, None)
+
+    @cached_property
+    def amounts(self) -> Amounts:
+        """Numbers of the question in words."""
+        return amounts_by(self.scales, self.response.describe(), self.system.excitation == "base")
 
     def limits(self) -> dict[str, float]:
         """Values of an answer about the band: friction without stops, and friction that sticks.

@@ -6,10 +6,14 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
+from ..datasets.amounts import Amounts, amounts_of, per_cycle
 from ..datasets.belt_labels import AXES, BELTS, CELL, MEASURES
 from ..datasets.labels import attributes, in_si
 from ..datasets.schema import checked_values
 from ..errors import InputError
+
+#: Significant digits of displacements and speeds.
+_DIGITS = 6
 
 
 def belts_form(ds: xr.Dataset) -> xr.Dataset:
@@ -89,11 +93,10 @@ def _describe_motion(ds: xr.Dataset) -> str:
     if np.isfinite(ds["cycle_period"]):
         period = f"{float(ds['cycle_period_s']):.6g} s" if "cycle_period_s" in ds else ""
         words.append(f"period {period or format(float(ds['cycle_period']), '.6g')}")
-        words.append(f"{_each(ds['stops_per_cycle'])} stops per cycle")
+        words.append(per_cycle(np.ravel(ds["stops_per_cycle"]), "stops"))
         words.append(f"stuck {_each(100.0 * ds['stuck_fraction'])} % of the time")
-    lowest, highest = (ds[f"{name}_m"] if f"{name}_m" in ds else ds[name] for name in ("x_min", "x_max"))
-    unit = " m" if "x_min_m" in ds else ""
-    words += [f"x from {_each(lowest)}{unit} to {_each(highest)}{unit}"]
+    lowest, highest = (_places(ds, name) for name in ("x_min", "x_max"))
+    words.append(f"x from {lowest} to {highest}")
     words += [f"growth of small vibrations about steady sliding {float(ds['growth']):.4g}"]
     status = next(one for one in regimes.BELT_STATUSES if one.value == int(ds["status"]))
     return ", ".join([*words, *([f"{status.name}: {status.advice}"] if status.value else [])])
@@ -103,9 +106,23 @@ def _each(values: xr.DataArray) -> str:
     return ", ".join(f"{value:.5g}" for value in np.atleast_1d(values.values))
 
 
+def _places(ds: xr.Dataset, name: str) -> str:
+    """Displacements of all masses, with their unit."""
+    words = amounts_of(ds)
+    return ", ".join(words.response(value, digits=_DIGITS) for value in np.ravel(ds[name]).tolist())
+
+
 def _range(ds: xr.Dataset, name: str) -> str:
-    """The value of a limit, or its range, in SI units where they are there."""
-    beside = f"{name}_m_s"
-    values, unit = (ds[beside].values, " m/s") if beside in ds else (ds[name].values, "")
-    low, high = (float(f(values)) for f in (np.min, np.max))
-    return f"{low:.6g}{unit}" if low == high else f"{low:.6g} to {high:.6g}{unit}"
+    """The value of a limit, or its range, in units where they are there."""
+    words = amounts_of(ds) if f"{name}_m_s" in ds else None
+    low, high = (float(f(ds[name].values)) for f in (np.min, np.max))
+    begin, end = (_limit(value, words) for value in (low, high))
+    unit = end.partition(" ")[2]
+    return end if low == high else f"{begin.removesuffix(f' {unit}' if unit else '')} to {end}"
+
+
+def _limit(value: float, words: Amounts | None) -> str:
+    """A limit: a number, or a belt speed with its unit."""
+    if np.isinf(value):
+        return "infinite"
+    return f"{value:.6g}" if words is None else words.speed(value, digits=_DIGITS)

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from .. import regimes
+from ..datasets.amounts import amounts_of, per_cycle
 from ..datasets.labels import CELL, IN_SI, LABELS, OLDER_NAMES, regime_of_choice
 from ..datasets.physical import describe_scales
 from ..datasets.schema import TEXTS, kind
@@ -98,13 +99,13 @@ def describe_response(ds: xr.Dataset) -> str:
     moving = regime is None or regime.value != regimes.PERMANENT_STICKING
     if regime is None or regime.value == regimes.STICK_SLIP:
         if "stops_per_cycle" in ds:
-            words.append(f"{_each(ds['stops_per_cycle'], '.4g')} stops per cycle")
+            words.append(per_cycle(np.ravel(ds["stops_per_cycle"]), "stops"))
         if "slips_per_cycle" in ds:
-            words.append(f"{_each(ds['slips_per_cycle'], '.4g')} slips per cycle")
+            words.append(per_cycle(np.ravel(ds["slips_per_cycle"]), "slips"))
         if "stuck_fraction" in ds:
             words.append(f"stuck {_each(100.0 * ds['stuck_fraction'], '.3g')} % of the time")
     if moving and "contact_amplitude" in ds:
-        words.append(f"amplitude {_each(ds['contact_amplitude'], '.6g')}")
+        words.append(f"amplitude {_sizes(ds, ds['contact_amplitude'].values)}")
     if "period" in ds and int(ds["period"]) > 1:
         words.append(f"period {int(ds['period'])}")
     if "status" in ds and int(ds["status"]) in regimes.WITHOUT_PERIOD:
@@ -115,6 +116,13 @@ def describe_response(ds: xr.Dataset) -> str:
 def _each(values: xr.DataArray, form: str) -> str:
     """Format a number, or those of all contacts."""
     return ", ".join(f"{value:{form}}" for value in np.atleast_1d(values.values))
+
+
+def _sizes(ds: xr.Dataset, values: np.ndarray) -> str:
+    """Displacements with their unit, the first ones of many."""
+    words, flat = amounts_of(ds), np.ravel(values)
+    more = f", ... ({flat.size:,})" if flat.size > _SHOWN else ""
+    return ", ".join(words.response(value, digits=6) for value in flat[:_SHOWN].tolist()) + more
 
 
 def describe_shares(ds: xr.Dataset) -> str:
@@ -266,7 +274,8 @@ def _axis(axis: xr.DataArray) -> str:
     if values.dtype.kind == "U":
         return ", ".join(np.atleast_1d(values))
     unit = axis.attrs.get("units", "1")
-    beside = "" if unit == "1" else f" {_printable(str(unit))}"
+    unit = _printable(str(unit)).replace(" s-1", "/s").replace(" s-2", "/s2")
+    beside = "" if unit == "1" else f" {unit}"
     if values.size <= _SHOWN:
         return _numbers(values) + beside
     ends = f"{values.min():g} to {values.max():g}"  # of what stands beside an axis, in any order
@@ -318,7 +327,7 @@ def _describe_results(ds: xr.Dataset, what: str) -> Iterator[str]:
 def _motion(ds: xr.Dataset) -> Iterator[str]:
     """Numbers of a motion in time: how far the masses go, and when the contact stops."""
     if "x" in ds:
-        yield f"largest |x|, mass by mass  {_numbers(np.abs(ds['x'].values).max(axis=1))}"
+        yield f"largest displacement, mass by mass  {_sizes(ds, np.abs(ds['x'].values).max(axis=1))}"
     if "event_tau" in ds and "event_direction" in ds and (ds["event_direction"] == 0).any():
         begins = ds["event_tau"].values[ds["event_direction"].values == 0]
         yield f"stops begin at tau/pi =  {_numbers(begins / np.pi)}"

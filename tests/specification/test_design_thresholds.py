@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import frictionmap as fm
+from frictionmap.datasets.amounts import Amounts
 from frictionmap.design.limits import Extreme
 from frictionmap.design.optimum import describe_cells
 from frictionmap.design.performance import Performance, Unclear
@@ -151,11 +152,18 @@ def test_an_irregular_cell_that_could_be_the_peak(seen, decides):
 
 
 def test_cells_in_words():
+    """In ratios, and in units where they are known."""
     one, two = Unclear(1, 0.8, 3.9, 5.0), Unclear(2, 0.8, np.nan, 5.0)
-    assert describe_cells(0.5, one) == (
-        "1 cell of the band has no periodic steady state at beta = 0.5 (r = 0.8: largest response seen 3.9)"
+    ratios = Amounts({}, "amplitude of mass 1")
+    assert describe_cells(ratios, 0.5, one) == (
+        "1 cell of the band has no periodic steady state at beta = 0.5 (r = 0.8: largest response seen "
+        "3.9 P/k1)"
     )
     assert (
-        describe_cells(0.5, two)
+        describe_cells(ratios, 0.5, two)
         == "2 cells of the band have no periodic steady state at beta = 0.5 (r = 0.8)"
+    )
+    units = Amounts({"force": 40.0, "frequency": 5.0, "length": 1e-3}, "amplitude of mass 1")
+    assert describe_cells(units, 0.5, one) == (
+        "1 cell of the band has no periodic steady state at 20 N (4 Hz: largest response seen 3.9 mm)"
     )

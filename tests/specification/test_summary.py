@@ -58,7 +58,7 @@ def test_a_response_prints_its_numbers(datasets):
     for name in ("stops_per_cycle", "contact_amplitude", "stuck_fraction", "beta_lim", "beta_stick"):
         assert f"{float(ds[name]):.6g}" in text
     reach = np.abs(ds.x).max("tau").values
-    assert f"mass by mass  {reach[0]:.6g}, {reach[1]:.6g}" in text
+    assert f"mass by mass  {reach[0]:.6g} P/k1, {reach[1]:.6g} P/k1" in text
     begins = ds.event_tau.values[ds.event_direction.values == 0] / np.pi
     assert ", ".join(f"{value:.6g}" for value in begins) in text
 

@@ -463,6 +463,8 @@ def test_a_response_is_asked_for_in_hertz(rig, tmp_path, monkeypatch, capsys):
     assert main([*asked, "--quiet"]) == 0
     ds = read(tmp_path / "rig-response.nc")
     assert (ds.r.item(), ds.frequency.item(), ds.friction_force.item()) == (0.5, 2.1, 2.5)
+    assert main(["info", "rig-response.nc"]) == 0
+    assert f"amplitude {1e3 * ds.contact_amplitude_m.item():.6g} mm" in capsys.readouterr().out
     for r, message in (
         ("2,1 Hz", "not a comma"),
         ("2.1 N", "N is a unit of force"),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...datasets.amounts import UP, amounts_of, band_of
+from ...datasets.amounts import DIGITS, UP, amounts_of, band_of, rounded
 from ...datasets.design_labels import size_label
 from ...datasets.labels import Label
 from ...errors import InputError, NoSteadyState
@@ -97,7 +97,7 @@ def no_separation(
     }  # fmt: skip
     asked = {"mu": task.mu, "beta": [task.low, task.high]}
     ds = answer("no-separation", system, task.band, found, asked, task.units, task.scales)
-    return ds.assign_attrs(response="loss of normal force over the preload")
+    return ds.assign_attrs(response=task.response.describe())
 
 
 def _refuse_others(system: System) -> None:
@@ -151,8 +151,8 @@ def _least_friction(task: "Task", curve: "PerformanceCurve") -> float:
     if k + 1 == points.beta.size:
         raise InputError(
             "beta",
-            f"must reach further: with {task.high:.6g}, the most friction that is searched, a contact opens; "
-            f"got [{task.low:.6g}, {task.high:.6g}]",
+            f"must reach further: with {task.amounts.friction(task.high, digits=DIGITS)}, the most that is "
+            f"searched, a contact opens; got [{task.low:.6g}, {task.high:.6g}]",
         )
     low, high = float(points.beta[k]), float(points.beta[k + 1])
     while high - low > _CLOSE * high:
@@ -160,11 +160,11 @@ def _least_friction(task: "Task", curve: "PerformanceCurve") -> float:
         opens = np.flatnonzero(largest(curve.at(between[1:-1])) > 1.0)
         last = int(opens[-1]) + 1 if opens.size else 0
         low, high = float(between[last]), float(between[last + 1])
-    _refuse_unknown(curve, high)
+    _refuse_unknown(task, curve, high)
     return high
 
 
-def _refuse_unknown(curve: "PerformanceCurve", beta: float) -> None:
+def _refuse_unknown(task: "Task", curve: "PerformanceCurve", beta: float) -> None:
     """Refuse an answer next to friction at which it is not known whether a contact opens."""
     from ..optimum import describe_cells
 
@@ -172,8 +172,8 @@ def _refuse_unknown(curve: "PerformanceCurve", beta: float) -> None:
         known = cells.peak > 1.0 or cells.seen > 1.0
         if not known and level >= beta * (1.0 - _NEXT):
             raise NoSteadyState(
-                f"cannot answer: {describe_cells(level, cells)}, and whether a contact opens there is not "
-                f"known; narrow the band or the range of beta, or add damping"
+                f"cannot answer: {describe_cells(task.amounts, level, cells)}, and whether a contact opens "
+                "there is not known; narrow the band or the range of beta, or add damping"
             )
 
 
@@ -201,18 +201,19 @@ def _sentences(ds: "xr.Dataset") -> Iterator[str]:
     )
 
 
-def _preload_of(ds: "xr.Dataset", k: int) -> str:
+def _preload_of(ds: "xr.Dataset", k: int, digits: int = 4) -> str:
+    """The preload of a contact, rounded up: a force where P is known."""
     if "preload_N" in ds:
-        return f"{float(ds['preload_N'][k]):.4g} N"
-    return f"{float(ds['preload'][k]):.4g} P"
+        return amounts_of(ds).friction(float(ds["preload"][k]), UP, digits)  # over P, as friction is
+    return f"{rounded(float(ds['preload'][k]), UP, digits)} P"
 
 
 def _preload_rows(ds: "xr.Dataset") -> Iterator[tuple[str, str]]:
     """The preload of every contact."""
     if "preload" in ds:
         for k, contact in enumerate(ds["pressed"].values.tolist()):
-            force = f" ({float(ds['preload_N'][k]):.6g} N)" if "preload_N" in ds else ""
-            yield f"preload N0 of contact {contact}", f"{float(ds['preload'][k]):.6g} P{force} or more"
+            ratio = f" ({rounded(float(ds['preload'][k]), UP, DIGITS)} P)" if "preload_N" in ds else ""
+            yield f"preload N0 of contact {contact}", f"{_preload_of(ds, k, DIGITS)}{ratio} or more"
 
 
 NO_SEPARATION = Question(

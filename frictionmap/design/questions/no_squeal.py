@@ -92,7 +92,9 @@ def no_squeal(system: System, beta: Any, mu: float = 1.0, *, units: Units | None
         "speed_search": searched, "growth_of_speed": growths(given, searched),
     }  # fmt: skip
     ds = unloaded_answer("no-squeal", system, values, {"beta": friction, "mu": ratio}, units, given.scales)
-    return ds if one or found.sliding >= found.quiet else ds.assign_attrs(warnings=_unknown(found.sliding))
+    if one or found.sliding >= found.quiet:
+        return ds
+    return ds.assign_attrs(warnings=_unknown(amounts_of(ds).speed(found.sliding, UP)))
 
 
 def _one(axes: dict[str, np.ndarray], name: str) -> float:
@@ -118,11 +120,11 @@ def _refuse(system: System, contacts: int) -> None:
         )
 
 
-def _unknown(sliding: float) -> str:
-    """The speeds between which only the growth is known of a structure, in words."""
+def _unknown(speed: str) -> str:
+    """The speeds between which only the growth of a structure is known, in words; `speed`: the lower one."""
     return (
-        f"from wall_speed = {sliding:.6g} on small vibrations die out, but up to the answer a push may begin "
-        "a cycle that stays: compute a map over these speeds"
+        f"at {speed} or more small vibrations die out, but below the answer a push may begin a cycle that "
+        "stays: compute a map over these speeds"
     )
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ... import regimes
-from ...datasets.amounts import DIGITS, Amounts, amounts_of
+from ...datasets.amounts import DIGITS, Amounts, amounts_of, per_cycle
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -68,7 +68,7 @@ def _peak(ds: "xr.Dataset", k: int) -> str:
         names = {code.value: code.name for code in regimes.BELT_REGIMES}
         parts.append(names[int(ds["peak_regime"][k])].replace("stick_slip", "stick-slip").replace("_", " "))
     if "peak_stops" in ds and float(ds["peak_stops"][k]) > 0.0:
-        parts.append(f"{float(ds['peak_stops'][k]):.4g} stops per cycle")
+        parts.append(per_cycle([float(ds["peak_stops"][k])], "stops"))
     return ", ".join(parts)
 
 

@@ -415,15 +415,15 @@ def build_parser() -> argparse.ArgumentParser:
     text = "Open an interactive map in the browser; it runs locally and sends nothing over the network."
     _takes_page(command("explore", "interactive map in the browser", text))
     text = (
-        "Fit friction, damping and natural frequency to measured data; print the estimates with their "
-        "standard errors; write NetCDF."
+        "Fit friction, damping and natural frequency to measured data; print the friction with its 95 % "
+        "interval, the conclusion, warnings and a table of all estimates; write NetCDF."
     )
     sub = command("identify", "friction, damping and natural frequency from measured data", text)
     _takes_config(sub, "RIG", "configuration of the measured data and the fit", "data.window=[0.5,4]")
     _takes_verbose(sub, "also print all further results of the fit")
     text = (
         "Answer a design question: which friction gives the least peak, keeps a limit, avoids stops or holds "
-        "the contact, or the margins of a working point; print the answer as a table; write NetCDF."
+        "the contact, or the margins of a working point; print it in sentences and a table; write NetCDF."
     )
     sub = command("design", "which friction to choose: least peak, within a limit, no stops, stuck", text)
     _takes_config(sub, "CONFIG", "configuration with a table [design]", "design.band=[0.5,2]")

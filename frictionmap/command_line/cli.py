@@ -5,7 +5,7 @@ import functools
 import math
 import shlex
 import sys
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -58,6 +58,16 @@ def _finish(ds: "xr.Dataset", config: "Config", options: Options) -> Callable[[P
     return lambda scratch: write_netcdf(ds, scratch, options.command_line)
 
 
+@contextlib.contextmanager
+def _watched(options: Options, what: str, parts: str = "") -> Iterator["Progress"]:
+    """Report the progress of work, and that kernels are being compiled; arguments as of `Progress`."""
+    from .._kernels.compiler.notices import listening
+    from .progress import Progress
+
+    with Progress(what, options.quiet, parts) as progress, listening(progress.compiling):
+        yield progress
+
+
 def _report(options: Options, output: "Output", *summary: str) -> None:
     if not options.quiet:
         _print("\n  ".join((f"{summary[0]}; wrote {output.path}", *summary[1:])))
@@ -85,14 +95,12 @@ def _map(options: Options, config: "Config", output: "Output") -> None:
 
 def _belt_map(options: Options, config: "Config", output: "Output") -> None:
     """Compute a map over belt speeds without a load."""
-    from .._kernels.compiler.notices import listening
     from ..files.belts import describe_belts
     from ..steady.sweep import sweep
-    from .progress import Progress
 
     assert config.wall_speed is not None
     cells = config.mu.size * config.wall_speed.size * config.beta.size
-    with Progress(f"map of {cells:,} cells", options.quiet) as progress, listening(progress.compiling):
+    with _watched(options, f"map of {cells:,} cells") as progress:
         ds = sweep(config, threads=options.threads, progress=progress)
         output.fill(_finish(ds, config, options))
     first, *others = describe_belts(ds)
@@ -124,11 +132,9 @@ def _fill_cells(
     options: Options, config: "Config", output: "Output", what: str, run: Callable[["Progress"], "xr.Dataset"]
 ) -> None:
     """Compute a grid of cells with progress, write it, and print a summary."""
-    from .._kernels.compiler.notices import listening
     from ..files.summary import describe_causes, describe_locking, describe_map, describe_reduction
-    from .progress import Progress
 
-    with Progress(what, options.quiet) as progress, listening(progress.compiling):
+    with _watched(options, what) as progress:
         ds = run(progress)
         output.fill(_finish(ds, config, options), lambda size: progress.writing(output.path, size))
     first = f"{describe_map(ds)} in {progress.took}"
@@ -157,11 +163,14 @@ def _boundaries(options: Options, config: "Config", output: "Output") -> None:
     if config.wall_speed is not None:
         _belt_boundaries(options, config, output)
         return
-    ds = boundaries(config.system, config.r, config.mu, units=config.units)
-    if options.borders or config.borders:
-        ds = _with_borders(ds, config)
-    output.fill(_finish(ds, config, options))
-    _report(options, output, f"{ds.sizes['r']:,} frequencies, {ds.sizes['mu']} mu", *describe_reduction(ds))
+    frequencies = f"{config.r.size:,} frequenc{'ies' if config.r.size != 1 else 'y'}"
+    what = f"boundaries at {frequencies}, {config.mu.size} mu"
+    with _watched(options, what) as progress:
+        ds = boundaries(config.system, config.r, config.mu, units=config.units)
+        if options.borders or config.borders:
+            ds = _with_borders(ds, config)
+        output.fill(_finish(ds, config, options))
+    _report(options, output, f"{what} in {progress.took}", *describe_reduction(ds))
 
 
 def _belt_boundaries(options: Options, config: "Config", output: "Output") -> None:
@@ -171,8 +180,9 @@ def _belt_boundaries(options: Options, config: "Config", output: "Output") -> No
 
     if options.borders:
         config.refuse_belt("find borders between numbers of stops")
-    ds = boundaries(config)
-    output.fill(_finish(ds, config, options))
+    with _watched(options, "limits of the belt"):
+        ds = boundaries(config)
+        output.fill(_finish(ds, config, options))
     _report(options, output, *describe_belts(ds))
 
 
@@ -186,8 +196,9 @@ def _response(options: Options, config: "Config", output: "Output") -> None:
         return
     if options.r is None:
         raise InputError("--r must be given, such as --r 0.5; got nothing")
-    ds = response(config.system, options.r, options.beta, mu, solver=config.solver, units=config.units)
-    output.fill(_finish(ds, config, options))
+    with _watched(options, "response"):
+        ds = response(config.system, options.r, options.beta, mu, solver=config.solver, units=config.units)
+        output.fill(_finish(ds, config, options))
     _report(options, output, describe_response(ds), *describe_locking(ds))
 
 
@@ -200,15 +211,11 @@ def _belt_response(options: Options, config: "Config", output: "Output", mu: flo
         raise InputError("cannot use --wall-speed with grid.r: it is for [grid] wall_speed; give --r instead")
     if options.r is not None or options.wall_speed is None:
         raise InputError("--wall-speed must be given with [grid] wall_speed, in the place of --r; got --r")
-    ds = response(
-        config.system,
-        None,
-        options.beta,
-        mu,
-        wall_speed=options.wall_speed,
-        units=config.units,
-    )
-    output.fill(_finish(ds, config, options))
+    with _watched(options, "response"):
+        ds = response(
+            config.system, None, options.beta, mu, wall_speed=options.wall_speed, units=config.units
+        )
+        output.fill(_finish(ds, config, options))
     _report(options, output, *describe_belts(ds))
 
 
@@ -292,13 +299,11 @@ def _store(options: Options) -> None:
 
 def _fill_store(options: Options, contents: "Contents", title: str, what: str) -> tuple["Store", str]:
     """Compute contents into a store, or its missing blocks; return the store and the time in words."""
-    from .._kernels.compiler.notices import listening
     from ..stores.cuts import cut_by_cost
     from ..stores.run import fill_store
-    from .progress import Progress
 
     find_cut = functools.partial(cut_by_cost, workers=options.workers or 0, threads=options.threads)
-    with Progress(what, options.quiet) as progress, listening(progress.compiling):
+    with _watched(options, what) as progress:
         fill = _fill(options, progress)
         store = fill_store(options.output, contents, title, fill, options.overwrite, progress, find_cut)
         return store, progress.took
@@ -371,11 +376,9 @@ def _put(content: bytes, path: Path) -> None:
 
 
 def _export_page(options: Options, scene: "Scene | Motions") -> None:
-    from .._kernels.compiler.notices import listening
     from ..explorer.scene import Scene
     from ..explorer.stored import StoredPage, check_page
     from ..files.places import claimed
-    from .progress import Progress
 
     if not isinstance(scene, Scene):
         raise InputError(
@@ -391,10 +394,7 @@ def _export_page(options: Options, scene: "Scene | Motions") -> None:
     page = StoredPage(scene, _keys_of(options.sliders))
     with claimed(options.output, options.overwrite, scene.files) as output:
         output.kept = lambda: _kept_page(output, page)
-        with (
-            Progress(f"page of {scene.title}", options.quiet, "maps") as progress,
-            listening(progress.compiling),
-        ):
+        with _watched(options, f"page of {scene.title}", "maps") as progress:
             page.compute(progress, only_first=True)
             _ask_for_sliders(options, page)
             page.compute(progress, 1e6 * (options.size or math.inf))
@@ -468,28 +468,24 @@ def _identify(options: Options) -> None:
     rig = load_rig(options.config, options.overrides)
     path = options.output or Path(f"{rig.name}-identify.nc")
     with claimed(path, options.overwrite, rig.files) as output:
-        ds = identify(rig)
+        with _watched(options, f"fit of {rig.title}") as progress:
+            ds = identify(rig)
         output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
-    _report(options, output, rig.title, *describe_estimates(ds, options.verbose))
+    _report(options, output, f"{rig.title} in {progress.took}", *describe_estimates(ds, options.verbose))
 
 
 def _design(options: Options) -> None:
     """Answer the question of a configuration; what is written reproduces the answer."""
-    from .._kernels.compiler.notices import listening
     from ..design.configuration import load_design
     from ..files.designs import describe_design
     from ..files.places import claimed
     from ..files.storage import write_netcdf
-    from .progress import Progress
 
     _refuse_ending(options)
     design = load_design(options.config, options.overrides, options.threads)
     path = options.output or Path(f"{design.name}-design.nc")
     with claimed(path, options.overwrite, design.files) as output:
-        with (
-            Progress(f"design question {design.question}", options.quiet) as progress,
-            listening(progress.compiling),
-        ):
+        with _watched(options, f"design question {design.question}") as progress:
             ds = design.ask()
         ds.attrs |= {"title": design.title, "config": design.text}
         output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))
@@ -530,16 +526,14 @@ def _spectrum(options: Options) -> None:
 
 
 def _follow_records(options: Options, task: "Task", what: str) -> None:
-    from .._kernels.compiler.notices import listening
     from ..files.motions import describe_motions
     from ..files.places import claimed
     from ..files.storage import write_netcdf
-    from .progress import Progress
 
     _refuse_ending(options)
     path = options.output or Path(f"{task.name}-{options.command}.nc")
     with claimed(path, options.overwrite, task.files) as output:
-        with Progress(what, options.quiet) as progress, listening(progress.compiling):
+        with _watched(options, what) as progress:
             ds = task.ask(threads=options.threads, progress=progress)
         ds.attrs |= {"title": task.title, "config": task.text}
         output.fill(lambda scratch: write_netcdf(ds, scratch, options.command_line))

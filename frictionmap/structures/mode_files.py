@@ -177,7 +177,7 @@ def _read_mat(path: Path) -> FileModes:
 
 
 def _read_csv(path: Path) -> FileModes:
-    """Columns frequency_Hz, damping_ratio, perhaps modal_mass, then one column a point."""
+    """A row per mode: frequency_Hz, optionally damping_ratio and modal_mass, and a column per point."""
     with open(path, encoding="utf-8-sig", newline="") as file:
         try:
             rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
@@ -189,8 +189,8 @@ def _read_csv(path: Path) -> FileModes:
     if "frequency_Hz" not in header or len(set(header)) < len(header) or not points or len(rows) < 2:
         raise InputError(
             "modes",
-            f": {path.name} must have the columns frequency_Hz, damping_ratio, perhaps modal_mass, and one a "
-            f"point, and a row per mode; got {', '.join(header) or 'nothing'}",
+            f": {path.name} must have a row per mode, with the column frequency_Hz, damping_ratio and "
+            f"modal_mass if they are known, and a column per point; got {', '.join(header) or 'nothing'}",
         )
     values = np.empty((len(rows) - 1, len(header)))
     for k, row in enumerate(rows[1:]):

@@ -342,7 +342,7 @@ def test_every_command_with_default_names(folder, capsys):
         output_of(capsys, ["map", "good.toml"]),
     )
     out = output_of(capsys, ["boundaries", "good.toml"])
-    assert out == "2 frequencies, 1 mu; wrote good-boundaries.nc\n"
+    assert re.fullmatch(r"boundaries at 2 frequencies, 1 mu in \S+ m?s; wrote good-boundaries\.nc\n", out)
     out = output_of(capsys, "response good.toml --r 0.3 --beta 0.5")
     assert re.fullmatch(r"stick slip, 2 stops per cycle, .*; wrote good-response\.nc\n", out)
     for name in ("good", "good-boundaries", "good-response"):

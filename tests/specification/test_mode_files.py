@@ -143,7 +143,7 @@ def test_a_configuration_with_a_file(tmp_path):
 @pytest.mark.parametrize(("name", "content", "message"), [
     ("rig.op2", b"", "modes must be a file that ends in .npz, .mat, .csv, .uff, .unv; got 'rig.op2'"),
     ("rig.npz", b"nothing", "it is no .npz file of plain arrays"),
-    ("rig.csv", b"f,tip\n1,2\n", "rig.csv must have the columns frequency_Hz, damping_ratio"),
+    ("rig.csv", b"f,tip\n1,2\n", "rig.csv must have a row per mode, with the column frequency_Hz"),
     ("rig.uff", b"    -1\n    15\n    -1\n", "rig.uff"),
     ("none.csv", None, "No such file or directory; check the path"),
 ])  # fmt: skip

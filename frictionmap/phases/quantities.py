@@ -9,6 +9,8 @@ from .. import regimes
 from .._kernels.phases.fill import AVERAGED, CYCLES, MULTIPLIER, PERIOD, STATUS, Cells
 from .._kernels.phases.problem import (
     ELASTIC,
+    FIRST,
+    LAST,
     LIFTOFFS,
     MOVED,
     OPEN,
@@ -133,6 +135,13 @@ def _normal_only(values: Callable[[Solved], np.ndarray]) -> Callable[[Solved], n
     return lambda solved: np.where(solved.presses, values(solved), np.nan)
 
 
+def _reversals(solved: Solved) -> np.ndarray:
+    """Reversals of the sense of slip per cycle; that from the last slip to the first one counts, too."""
+    counts, status = solved.cells.counts, solved.cells.numbers[:, STATUS, np.newaxis]
+    closes = (status == regimes.RESOLVED) & (counts[:, LAST] * counts[:, FIRST] < 0.0)
+    return solved.per_period(REVERSALS, (ELASTIC,)) + closes / solved.periods
+
+
 def _origin(solved: Solved) -> np.ndarray:
     resolved = solved.cells.numbers[:, STATUS] == regimes.RESOLVED
     return np.where(resolved, regimes.PERIODIC_ORBIT, regimes.INTEGRATED).astype(np.int8)
@@ -152,7 +161,7 @@ TABLE: dict[str, Callable[[Solved], np.ndarray]] = {
     "turns_per_cycle": lambda solved: solved.per_period(TURNS, (RIGID,)),
     "stuck_fraction": lambda solved: solved.share(STUCK, (RIGID,)),
     "slips_per_cycle": lambda solved: solved.per_period(SLIPS, (ELASTIC,)),
-    "slip_reversals_per_cycle": lambda solved: solved.per_period(REVERSALS, (ELASTIC,)),
+    "slip_reversals_per_cycle": _reversals,
     "elastic_fraction": lambda solved: solved.share(STUCK, (ELASTIC,)),
     "open_fraction": _normal_only(lambda solved: solved.share(OPEN, (RIGID, ELASTIC, SMOOTH))),
     "separations_per_cycle": _normal_only(

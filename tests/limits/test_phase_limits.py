@@ -212,3 +212,16 @@ def test_the_place_of_contacts_that_rest_in_the_end(beta):
     assert np.abs(wanted.midpoint.values).max() > 1e-3
     assert np.abs(found["peak_to_peak"] - wanted.peak_to_peak.values).max() < 1e-10
     assert np.abs(found["midpoint"] - wanted.midpoint.values).max() < 1e-10
+
+
+def test_reversals_of_slip_are_those_of_a_system_without_the_stop_that_it_never_reaches():
+    """A periodic motion reverses its slips an even number of times."""
+    outputs = ["slips_per_cycle", "slip_reversals_per_cycle"]
+    own = {"contacts": [fm.Contact(stiffness=3.0)], "damping_ratios": 0.05}
+    for loads in ({1: 1.0}, {1: 1.0, 3: 0.6 - 0.4j}, {2: 1.0, 5: 0.5j}):
+        plain = fm.System(load_harmonics=loads, **own)
+        beside = fm.System(load_harmonics=loads, springs=[fm.Spring(gap=1e3, stiffness=1.0)], **own)
+        ds, wanted = (fm.sweep(one, [0.4, 0.9], [0.3, 0.6], outputs=outputs) for one in (beside, plain))
+        assert (wanted.slip_reversals_per_cycle % 2 == 0).all()
+        for name in outputs:
+            np.testing.assert_array_equal(ds[name], wanted[name])

@@ -20,6 +20,9 @@ from .observed import wants_further
 from .outputs import COUNTERPARTS, OF_STARTS, TABLE, depends_on_places, is_of_masses, is_wanted, output_values
 from .problem import general_of
 
+#: Outputs with a dimension that is empty where no contact has a friction law, or without springs.
+_OF_PARTS = ("segment_fraction", "spring_crossings", "spring_force_max")
+
 
 def chosen_outputs(
     general: ContactSystem, solver: Solver, table: Collection[str], is_wanted: Callable, what: str
@@ -40,7 +43,8 @@ def chosen_outputs(
         if name not in table:
             raise InputError(f"cannot compute {name} with {what}; valid outputs: {', '.join(table)}")
         counterpart = COUNTERPARTS.get(name, name)
-        names += [one for one in (name, counterpart) if is_wanted(one, general) or counterpart == name]
+        always = counterpart == name and name not in _OF_PARTS
+        names += [one for one in (name, counterpart) if is_wanted(one, general) or always]
     if general.count > 1:
         names.append("contact_regime")
     return tuple(dict.fromkeys((*names, "status")))

@@ -112,3 +112,10 @@ def test_the_page_shows_systems_with_a_law(tmp_path):
     assert arrays["classes"].tolist() == expected.tolist()
     assert "beta_lim" not in arrays
     assert arrays["beta_stick"] == pytest.approx(ds.beta_stick.values[0], rel=1e-12)
+
+
+def test_segments_of_contacts_without_a_law_are_left_out():
+    plain = fm.System(contact_stiffness=3.0)
+    ds = fm.sweep(plain, [0.5], [0.5], outputs=["regime", "segment_fraction"])
+    assert "segment_fraction" not in ds
+    assert "segment" not in ds.dims

@@ -1,6 +1,7 @@
 """Response curves of general systems, cell by cell."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -10,13 +11,14 @@ from ..datasets.labels import LABELS, OLDER_NAMES, PER_CONTACT, labels_of
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError, NoSteadyState
 from ..jobs import Progress
+from ..model.general import rank_of
 from ..model.settings import RECORDED, CurveSettings, Solver
 from ..model.system import System
 from .boundaries import find_boundaries, stays_at_rest
 from .certificate import certified_beta
 from .cycle import equivalent_of, first_harmonics, harmonic_values, parts, phase_values, work_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
-from .held import held_displacements
+from .held import held_forces, held_ranges
 from .maps import solve_cells
 from .observed import wants_further
 from .outputs import is_wanted, output_values
@@ -28,6 +30,12 @@ from .steps import Steps, cell_steps
 _ALWAYS = ("regime", "contact_regime", "stops_per_cycle", "slips_per_cycle", "period", "status")
 
 _OFFERED = ("amplitude", "phase", "first_harmonic", "energy", "harmonics", *RECORDED)
+
+#: Parts of a period, per harmonic, among which extremes are looked for.
+_PARTS = 8
+
+#: Displacement over the largest that is rounding error.
+_ROUNDING = 1e-12
 
 
 def _cell(system: System, steps: Steps, asked: CurveSettings) -> dict[str, np.ndarray]:
@@ -52,6 +60,78 @@ def _cell(system: System, steps: Steps, asked: CurveSettings) -> dict[str, np.nd
     return values
 
 
+@dataclass(frozen=True)
+class _Held:
+    """A structure with all contacts at rest: harmonics about the places that it comes to."""
+
+    phasors: dict[str, np.ndarray]  # as of `harmonic_values`
+    damping: float  # work per period
+    period: int = 1
+    drifts: bool = False
+
+    @property
+    def begins(self) -> np.ndarray:
+        """As many as there are parts of a period among which extremes are looked for."""
+        return np.zeros(_PARTS * self.phasors["displacement_harmonic"].shape[1])
+
+    def displacements(self, tau: np.ndarray, order: int = 0, row: int | slice = slice(None)) -> np.ndarray:
+        """Displacements of the masses or points, or with `order` 1 their derivatives by tau; see `Steps`."""
+        x = self.phasors["displacement_harmonic"][row]
+        n = np.arange(x.shape[-1])
+        return np.asarray(((1j * n) ** order * x @ np.exp(1j * np.outer(n, tau))).real)
+
+
+def _held(system: System, r: float, lowest: np.ndarray, highest: int) -> _Held:
+    """The motion with all contacts at rest, with harmonics up to `highest` or those of the load.
+
+    lowest : (N + n,) least displacements in the contacts and of the masses
+    """
+    general, at = general_of(system), np.array([r])
+    count, n = general.count, system.n
+    forces, motions = held_forces(system, at)
+    whole = max(highest, *motions)
+    x, z, f = (np.zeros((rows, whole + 1), dtype=complex) for rows in (n, count, count))
+    damping, moved = 0.0, np.array([float(group.base) for group in general.groups])
+    for order, motion in motions.items():
+        u = general.base.get(order, 0.0)
+        x[:, order], f[:, order] = general.displacements(order, motion, forces[order])[0], forces[order][0]
+        vectors = general.vectors if general.points is None else general.points.vectors
+        z[:, order] = np.where(general.elastic, vectors @ x[:, order] - u * moved, 0.0)
+        rate = order * (motion[0] - (u if system.damping_reference == "base" else 0.0))
+        damping += np.pi * r * float((rate.conj() @ system.modes.damping @ rate).real)
+    x[np.abs(x) <= _ROUNDING * np.abs(x).max()] = 0.0  # masses that contacts hold
+    if not system.rigid_modes:  # which come to any place
+        place = lowest[: count + n] - held_ranges(system, at)[0][0]
+        z[:, 0], x[:, 0] = place[:count], place[count:]
+    f[:, 0] = _constant_forces(system, x[:, 0].real)
+    return _Held({"displacement_harmonic": x, "contact_harmonic": z, "friction_harmonic": f}, damping)
+
+
+def _constant_forces(system: System, place: np.ndarray) -> np.ndarray:
+    """Means of the forces in contacts that hold a structure at a place (n,), (N,); NaN where others would."""
+    general = general_of(system)
+    if general.points is not None or rank_of(general.vectors) < general.count:
+        return np.full(general.count, np.nan)
+    return np.linalg.lstsq(general.vectors.T, general.offset - system.modes.stiffness @ place)[0]
+
+
+def _held_quantities(held: _Held, asked: CurveSettings) -> dict[str, np.ndarray]:
+    """The requested numbers that follow from harmonics; see `_cell`."""
+    quantities = asked.quantities
+    values: dict[str, np.ndarray] = {}
+    phasors = {name: one[:, : max(1, asked.harmonics) + 1] for name, one in held.phasors.items()}
+    if "phase" in quantities:
+        values |= phase_values(held)  # type: ignore[arg-type]  # it has what is needed of `Steps`
+    if "first_harmonic" in quantities:
+        values |= first_harmonics(phasors)
+    if "harmonics" in quantities:
+        values |= {name: parts(value) for name, value in phasors.items()}
+    if "energy" in quantities:
+        values |= equivalent_of(phasors)
+        values |= {"work_input": np.array(held.damping), "work_damping": np.array(held.damping)}
+    return values
+
+
 def _stuck(
     system: System, asked: CurveSettings, point: tuple[float, float, float], stick: float, solver: Solver
 ) -> dict[str, np.ndarray]:
@@ -61,15 +141,14 @@ def _stuck(
     """
     general = general_of(system)
     axes = {name: np.array([value]) for name, value in zip(("mu", "r", "beta"), point, strict=True)}
-    further, r = wants_further(system, asked.quantities), axes["r"]
     cells = solve_cells(
-        system, axes, np.array([[stick]]), solver, 1, None, None, masses=True, further=further
+        system, axes, np.array([[stick]]), solver, 1, None, None, masses=True,
+        further=wants_further(system, asked.quantities),
     )  # fmt: skip
-    values = {"regime": np.array(regimes.PERMANENT_STICKING), "status": cells.status[0, 0, 0],
-              "period": np.array(1), "contact_regime": np.zeros(general.count)}  # fmt: skip
-    values |= {
-        name: output_values(name, system, cells)[0, 0, 0] for name in RECORDED if name in asked.quantities
-    }
+    names = [*_ALWAYS, *(name for name in RECORDED if name in asked.quantities)]
+    if "energy" in asked.quantities:
+        names += ["sliding_distance", "work_friction", "work_wall"]
+    values = {name: output_values(name, system, cells)[0, 0, 0] for name in names}
     low, high = cells.lowest[0, 0, 0], cells.highest[0, 0, 0]
     ranges = high - low
     moduli = 0.5 * ranges if system.rigid_modes else np.maximum(high, -low)  # about the middle, as of maps
@@ -78,13 +157,7 @@ def _stuck(
         for name, table in (("amplitude", moduli), ("peak_to_peak", ranges)):
             values[name] = table[general.count : general.count + system.n]
             values[f"contact_{name}"] = np.where(rigid, 0.0, table[: general.count])
-    motions = held_displacements(system, r)
-    if "first_harmonic" in asked.quantities and 1 in motions:
-        first = motions[1][0]
-        finite = np.isfinite(first)
-        values["first_harmonic_amplitude"] = np.abs(first)
-        values["first_harmonic_phase"] = np.where(finite, -np.angle(np.where(finite, first, 1.0)), np.nan)
-    return values
+    return values | _held_quantities(_held(system, point[1], low, asked.harmonics), asked)
 
 
 def of_cells(name: str, values: np.ndarray, contacts: int) -> xr.Variable:

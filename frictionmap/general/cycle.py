@@ -18,6 +18,12 @@ _REFINED = 6
 #: Amplitude over P/k1 at or below which a contact rests.
 _ROUNDING = 1e-12
 
+#: A whole period of the load.
+_TURN = 2.0 * np.pi
+
+#: Speed of a mass at rest, over its largest, and the shortest stop that holds a maximum.
+_STILL, _LEAST_STOP = 1e-9, 1e-7
+
 #: Phasor that is not known.
 _UNKNOWN = complex(np.nan, np.nan)
 
@@ -111,27 +117,60 @@ def first_harmonics(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def phase_values(steps: Steps) -> dict[str, np.ndarray]:
-    """Lags of the maxima of the displacements; NaN where the period is not 1 or the masses rest there."""
+    """Lags of the maxima of the displacements; of those held over a stop its begin and end instead.
+
+    NaN where the period is not 1, and of masses at rest.
+    """
     count = len(steps.displacements(np.zeros(1)))
+    found = {name: np.full(count, np.nan) for name in ("phase_lag", "phase_begin", "phase_end")}
     if steps.period != 1 or steps.drifts:
-        return {"phase_lag": np.full(count, np.nan)}
-    tau = np.linspace(0.0, 2.0 * np.pi, _SAMPLES * max(64, steps.begins.size) + 1)[:-1]
+        return found
+    tau = np.linspace(0.0, _TURN, _SAMPLES * max(64, steps.begins.size) + 1)[:-1]
     x = steps.displacements(tau)
-    found = np.full(count, np.nan)
+    edges = np.append(steps.begins, _TURN)
+    speeds = np.abs(steps.displacements(SECTION + 0.5 * (edges[:-1] + edges[1:]), 1))
+    still = speeds <= _STILL * speeds.max(axis=1, keepdims=True)
     for i in range(count):
+        if np.ptp(x[i]) <= _ROUNDING * np.abs(x).max():
+            continue
         largest = np.argmax(np.abs(x[i]))
-        place, step = tau[largest], tau[1]
-        for _ in range(_REFINED):
-            around = place + 1e-4 * step * np.array([-1.0, 0.0, 1.0])
-            v = steps.displacements(around, 1, i)
-            bend = (v[2] - v[0]) / (around[2] - around[0])
-            if bend == 0.0:
-                break
-            place += float(np.clip(-v[1] / bend, -step, step))
-        if abs(x[i]).max() > 0.0:
-            half = np.pi if x[i, largest] < 0.0 else 0.0  # a minimum counts as a maximum half a period later
-            found[i] = np.mod(place + half + np.pi, 2.0 * np.pi) - np.pi
-    return {"phase_lag": found}
+        place = _maximum(steps, i, tau[largest], tau[1])
+        begin, end = _stop(edges, still[i], place)
+        half = np.pi if x[i, largest] < 0.0 else 0.0  # a minimum counts as a maximum half a period later
+        held = end - begin > _LEAST_STOP
+        lag = np.mod((begin if held else place) + half + np.pi, _TURN) - np.pi
+        found["phase_begin" if held else "phase_lag"][i] = lag
+        if held:
+            found["phase_end"][i] = lag + end - begin
+    return found
+
+
+def _maximum(steps: Steps, i: int, place: float, step: float) -> float:
+    """The phase of an extreme of the displacement of mass i near a sample, `step` from the next one."""
+    for _ in range(_REFINED):
+        around = place + 1e-4 * step * np.array([-1.0, 0.0, 1.0])
+        v = steps.displacements(around, 1, i)
+        bend = (v[2] - v[0]) / (around[2] - around[0])
+        if bend == 0.0:
+            break
+        place += float(np.clip(-v[1] / bend, -step, step))
+    return place
+
+
+def _stop(edges: np.ndarray, still: np.ndarray, place: float) -> tuple[float, float]:
+    """Begin and end of the stop of a mass around a phase; equal if it moves there.
+
+    edges : (K + 1,) of the steps, since the section
+    still : (K,) bool: whether the mass rests in each step
+    """
+    k = int(np.searchsorted(edges, np.mod(place - SECTION, _TURN), side="right")) - 1
+    if still.all() or not still[min(k, still.size - 1)]:
+        return place, place
+    moves = np.flatnonzero(~still)
+    before, after = moves[moves < k], moves[moves > k]
+    begin = edges[before[-1] + 1] if before.size else edges[moves[-1] + 1] - _TURN
+    end = edges[after[0]] if after.size else edges[moves[0]] + _TURN
+    return SECTION + float(begin), SECTION + float(end)
 
 
 def equivalent_of(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

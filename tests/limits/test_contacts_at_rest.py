@@ -269,3 +269,61 @@ def test_held_contacts_do_not_drift_where_the_cells_of_a_map_lie_close():
     row = solved(system, 0.904, beta)
     for k in (-1, -2, -3):
         agree(solved(system, 0.904, beta[k]).isel(beta=0), row.isel(beta=k))
+
+
+# response curves of contacts that stick permanently
+
+PULLED = {"load_harmonics": {1: [1.0, 0.2j], 2: [0.0, 0.4]}, "load_offset": [0.3, -0.1], **TWO}
+ALL_AT_REST = [
+    fm.System(contacts=[fm.Contact("fixed-wall", 1), fm.Contact("between-masses", (1, 2), stiffness=3.0)],
+              **PULLED),
+    fm.System(contact_masses=[2], contact_stiffness=3.0, **PULLED),
+    fm.System(contacts=[fm.Contact("joined-base-wall", 1, stiffness=2.0)], excitation="base",
+              damping_reference="base", load_harmonics={1: 1.0, 3: 0.3}, **TWO),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("system", ALL_AT_REST)
+def test_harmonics_of_a_structure_with_contacts_at_rest_solve_its_equations(system):
+    """(K - n^2 r^2 M + i n r C) X_n + W F_n = p_n, F_n = k_t Z_n of springs, and the works balance."""
+    r, modes, general = 0.7, system.modes, system.contact_system
+    ds = fm.curves(system, [r], [50.0], harmonics=3).isel(mu=0, r=0, beta=0)
+    assert int(ds.status) == 0
+    x, z, f = (
+        np.atleast_2d(ds[f"{name}_harmonic"].values @ [1.0, 1j])
+        for name in ("displacement", "contact", "friction")
+    )
+    works = {name: float(ds[f"work_{name}"].sum()) for name in ("input", "friction", "damping")}
+    given = 0.0
+    for n in range(4):
+        u = general.base.get(n, 0.0)
+        # base motion acts through the spring and the dashpot of the first mass
+        load = (general.forces.get(n, 0.0) + u * (modes.stiffness + 1j * n * r * modes.damping).sum(axis=1)
+                + (general.offset if n == 0 else 0.0))  # fmt: skip
+        dynamic = modes.stiffness - (n * r) ** 2 * modes.mass + 1j * n * r * modes.damping
+        assert np.abs(dynamic @ x[:, n] + general.vectors.T @ f[:, n] - load).max() < 1e-13
+        rigid = ~general.elastic
+        assert np.abs(z[rigid, n]).max(initial=0.0) < 1e-13 or n == 0
+        if n:
+            moved = general.vectors @ x[:, n] - u * np.array([group.base for group in general.groups])
+            kt = np.array([group.stiffness or np.inf for group in general.groups])
+            assert np.abs(moved - np.where(rigid, 0.0, f[:, n] / kt)).max() < 1e-13
+            rate = 1j * n * (x[:, n] - u)
+            given += np.pi * r * (rate.conj() @ modes.damping @ rate).real
+    assert works["friction"] == 0.0
+    assert works["input"] == works["damping"] == pytest.approx(given, rel=1e-12)
+    np.testing.assert_array_equal(ds.sliding_distance, 0.0)
+    if general.elastic.any():
+        assert np.nanmax(np.abs(ds.slips_per_cycle)) == 0.0
+    tau = np.linspace(0.0, 2.0 * np.pi, 200_001)
+    waves = np.exp(1j * np.outer(np.arange(4), tau))
+    lags = np.atleast_1d(ds.phase_lag)
+    for row, lag, amplitude in zip(x, lags, ds.amplitude.values, strict=True):
+        motion = (row @ waves).real
+        k = int(np.argmax(np.abs(motion)))
+        assert abs(motion[k]) == pytest.approx(amplitude, rel=1e-9)
+        if np.ptp(motion) > 1e-12:
+            apart = lag - tau[k] - (np.pi if motion[k] < 0.0 else 0.0)
+            assert abs(np.angle(np.exp(1j * apart))) < 1e-4
+        else:  # a mass that its contact holds
+            assert np.isnan(lag)

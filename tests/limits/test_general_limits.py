@@ -108,6 +108,24 @@ def test_harmonics_and_works_are_those_of_the_other_engine():
         assert np.allclose(ds[name], wanted[name], rtol=1e-9, atol=1e-10), name
 
 
+@pytest.mark.parametrize(("kind", "masses", "system"), ONE_CONTACT)
+def test_lags_and_stops_at_maxima_are_those_of_the_other_engine(kind, masses, system):
+    """Where a stop holds a mass at its maximum there is no lag, but the begin and the end of the stop."""
+    plain = fm.System(kind, masses, **system)
+    general = fm.System(contacts=[fm.Contact(kind, masses)], **system)
+    r, beta = [0.23, 0.4, 0.9, 1.3], [0.05, 0.3, 0.7, 30.0]
+    ds, wanted = (fm.curves(one, r, beta, quantities=["amplitude", "phase"]) for one in (general, plain))
+    np.testing.assert_array_equal(ds.regime, wanted.regime)
+    held = np.isfinite(wanted.phase_begin.values).any()
+    assert held == (kind == "fixed-wall")
+    moves = wanted.amplitude.values > 1e-12  # the lag of a mass at rest is none, or rounding error
+    for name in ("phase_lag", "phase_begin", "phase_end"):
+        found, exact = ds[name].values[moves], wanted[name].values[moves]
+        np.testing.assert_array_equal(np.isnan(found), np.isnan(exact), err_msg=name)
+        apart = np.abs(np.exp(1j * found) - np.exp(1j * exact))
+        assert np.nanmax(apart, initial=0.0) < 1e-7, name
+
+
 def two(contacts, **further):
     """Two masses with contacts; further keys of the system."""
     own = {"mass_ratios": [1.0, 0.7], "stiffness_ratios": [1.0, 0.5], "damping_ratios": 0.02, **further}

@@ -63,12 +63,26 @@ def _is_independent(row, motion, j):
 
 
 @kernel
-def _extend_basis(problem, row, motion):
-    """Give constraints to further held contacts, for as long as they are independent; False if singular."""
+def _is_inside(box, j):
+    """Whether a force is inside its limits, and not at one of them."""
+    share = 1.0 - TOGETHER
+    return box[LOWER, j] * share < box[FORCE, j] and box[FORCE, j] < box[UPPER, j] * share
+
+
+@kernel
+def _extend_basis(problem, row, motion, box, inside):
+    """Give constraints to further held contacts, for as long as they are independent; False if singular.
+
+    Parameters
+    ----------
+    problem, row, motion, box : see `_find_forces`
+    inside : whether to those alone whose forces are inside their limits
+    """
     if not factor_held(problem, row, motion):
         return False
     for j in range(motion.sense.size):
-        if motion.sense[j] == 0 and motion.idle[j] and _is_independent(row, motion, j):
+        chosen = motion.sense[j] == 0 and motion.idle[j] and (not inside or _is_inside(box, j))
+        if chosen and _is_independent(row, motion, j):
             motion.idle[j] = False
             if not factor_held(problem, row, motion):
                 return False
@@ -76,16 +90,31 @@ def _extend_basis(problem, row, motion):
 
 
 @kernel
-def factor_independent(problem, row, motion):
-    """`factor_held`, of held contacts that may close loops.
+def _complete_basis(problem, row, motion, box):
+    """`_extend_basis` by all contacts, those inside their limits first.
+
+    One at its limit whose force does not change would be at its limit again in every step.
+    """
+    return _extend_basis(problem, row, motion, box, True) and _extend_basis(problem, row, motion, box, False)
+
+
+@kernel
+def _hold_none(motion):
+    """Begin the choice of the contacts that have constraints.
 
     Those that slide have the force of their slide, never one that is kept from before.
     """
-    if not problem.loops:
-        return factor_held(problem, row, motion)
     for j in range(motion.sense.size):
         motion.idle[j] = motion.sense[j] == 0
-    return _extend_basis(problem, row, motion)
+
+
+@kernel
+def factor_independent(problem, row, motion, box):
+    """`factor_held`, of held contacts that may close loops; `box`: scratch."""
+    if not problem.loops:
+        return factor_held(problem, row, motion)
+    _hold_none(motion)
+    return _extend_basis(problem, row, motion, box, False)
 
 
 @kernel
@@ -229,7 +258,7 @@ def _release_accelerated(problem, row, motion, box, zeros):
             motion.sense[j] = 1 if box[ACCELERATION, j] > 0.0 else -1
             motion.idle[j] = False
             motion.fresh[j] = zeros
-    return _extend_basis(problem, row, motion)
+    return _complete_basis(problem, row, motion, box)
 
 
 @kernel
@@ -268,7 +297,8 @@ def _settle_loops(problem, row, friction, tau, motion, box, forces, arrived):
             motion.sense[j] = 0
             box[FORCE, j] = min(max(forces[j], -limit), limit)
     _fill_whole(problem, row, motion, box, False)
-    if not factor_independent(problem, row, motion):
+    _hold_none(motion)
+    if not _complete_basis(problem, row, motion, box):
         return False
     stop_exactly(problem, row, motion)
     if not _find_forces(problem, row, motion, box) or not _release_accelerated(problem, row, motion, box, 1):

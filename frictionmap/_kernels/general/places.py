@@ -121,7 +121,7 @@ def stop_contacts(problem, row, motion, memory):
     put_state(memory.start, memory.senses, motion)
     motion.clock[0] = math.nan
     set_channels(problem, row, SECTION, 0, motion)
-    if not factor_independent(problem, row, motion):
+    if not factor_independent(problem, row, motion, memory.box):
         return False
     stop_exactly(problem, row, motion)
     take_state(motion, memory.start, memory.senses, 1.0)

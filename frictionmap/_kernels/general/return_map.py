@@ -453,7 +453,7 @@ def keep_places(problem, row, motion, memory, matrix, weight):
     modes, contacts = problem.push.shape[0], problem.spring.size
     for j in range(contacts):
         motion.sense[j] = 1 if memory.counts[MOVED, j] != 0.0 else 0
-    factor_independent(problem, row, motion)  # as when all of them were held
+    factor_independent(problem, row, motion, memory.box)  # as when all of them were held
     if is_coupled(problem):
         _keep_coupled_places(problem, motion, memory, matrix, weight)
         return

@@ -7,6 +7,7 @@ import numpy as np
 from ..errors import InputError
 from ..general.certificate import certified_beta, friction_to_rest
 from ..general.held import rest_scales, stick_scales
+from ..general.loops import loop_stick_scales
 from ..general.normal_resting import is_known, resting_friction
 from ..model.general import refuse_law, refuse_phases
 from ..model.system import System
@@ -70,26 +71,43 @@ def _scales(system: System, needed: np.ndarray, mu: float | None) -> np.ndarray:
     return stick_scales(system.contact_system, needed, np.array([mu]))[0]
 
 
-def _resting(system: System, r: np.ndarray, mu: float | None) -> np.ndarray:
-    """The friction ratio of `stick_limit` where normal forces move with the structure, (n_r, 1)."""
+def is_joint(system: System) -> bool:
+    """Whether one friction ratio is that of all contacts: no friction of a single one is known to hold it
+    where contacts close a loop, or normal forces move with the structure.
+    """
+    contacts = system.contact_system
+    return bool(contacts.loop) or contacts.has_phases
+
+
+def _joint(system: System, r: np.ndarray, mu: float | None) -> np.ndarray:
+    """The friction ratio of `stick_limit` where it is that of all contacts, (n_r, 1)."""
     look()
-    if not has_stick_limit(system):
+    if system.contact_system.loop:
+        found = loop_stick_scales(system, r, np.array([1.0 if mu is None else mu]), kinetic=mu is None)[0]
+        return found[:, np.newaxis]
+    if unknown_stick(system):
         return np.full((r.size, 1), np.nan)
     return resting_friction(system, r, 1.0 if mu is None else mu)[:, np.newaxis]
 
 
-def has_stick_limit(system: System) -> bool:
-    """Whether `stick_limit` is known: without piecewise linear springs and contacts without friction."""
+def unknown_stick(system: System) -> str:
+    """What a system has with which `stick_limit` is not known, in words; empty without that."""
+    contacts = system.contact_system
     engine_of(system)  # it refuses free structures
-    return not system.contact_system.has_phases or is_known(system)
+    if contacts.loop and any(n % 2 == 0 for n in contacts.orders):
+        return "even harmonics and contacts that close a loop"
+    if contacts.has_phases and not is_known(system):
+        return "piecewise linear springs or contacts without friction"
+    return ""
 
 
 def refuse_unknown_stick(system: System, what: str) -> None:
     """Refuse a system without a known `stick_limit`; `what`: words after "cannot"."""
-    if not has_stick_limit(system):
+    unknown = unknown_stick(system)
+    if unknown:
         raise InputError(
-            f"cannot {what} with piecewise linear springs or contacts without friction: the friction that "
-            f"holds has no closed form there; compute a map, or use question at-most"
+            f"cannot {what} with {unknown}: the friction that holds has no closed form there; compute a map, "
+            f"or use question at-most"
         )
 
 
@@ -98,10 +116,10 @@ def stick_limit(system: System, r: np.ndarray, mu: float | None) -> np.ndarray:
 
     With static friction, of ratio mu, contacts that are at rest stay so.  With mu None kinetic friction
     alone is enough, at every speed: every motion comes to rest (theory.md 6, 11).  Where normal forces move
-    with the structure they can rest, from some starts; NaN where this has no closed form.
+    with the structure they can rest, from some starts.  NaN where this has no closed form.
     """
-    if system.contact_system.has_phases:
-        return _resting(system, r, mu)[:, 0]
+    if is_joint(system):
+        return _joint(system, r, mu)[:, 0]
     return _scales(system, needed_friction(system, r), mu).max(axis=1)
 
 
@@ -111,7 +129,8 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
     Raises
     ------
     InputError
-        Contacts are elastic, or their friction depends on the speed: they have no such limit.
+        Contacts are elastic, or their friction depends on the speed: they have no such limit; contacts
+        that close a loop, where it is not known.
     """
     look()
     refuse_law(
@@ -125,6 +144,11 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
             "find friction without stops",
             "no limit of it is known there; compute a map of stops_per_cycle",
         )
+    if system.contact_system.loop:
+        raise InputError(
+            "cannot find friction without stops where contacts close a loop: no limit of it is known there; "
+            "compute a map of stops_per_cycle"
+        )
     if not has_no_stop_limit(system):
         raise InputError(
             "cannot find friction without stops with contact_stiffness: a spring in the contact has no such "
@@ -136,7 +160,7 @@ def no_stop_limit(system: System, r: np.ndarray, mu: float) -> np.ndarray:
 def has_no_stop_limit(system: System) -> bool:
     """Whether `no_stop_limit` exists, and is known."""
     contacts = system.contact_system
-    return not (contacts.elastic.any() or contacts.has_law or contacts.has_phases)
+    return not (contacts.elastic.any() or contacts.has_law or is_joint(system))
 
 
 def starts_matter(system: System, mu: float) -> bool:
@@ -184,12 +208,12 @@ def least_no_stop(system: System, band: Band, mu: float) -> tuple[Extreme, Point
 
 def largest_stick(system: System, band: Band, mu: float | None) -> Extreme:
     """The largest friction ratio of `stick_limit` over a band: infinite at a pole, NaN if unknown."""
-    if not has_stick_limit(system):
+    if unknown_stick(system):
         return Extreme(np.nan, np.nan)
-    phases = system.contact_system.has_phases
+    joint = is_joint(system)
 
     def of(r: np.ndarray) -> np.ndarray:
-        return _resting(system, r, mu) if phases else needed_friction(system, r)
+        return _joint(system, r, mu) if joint else needed_friction(system, r)
 
     r = stick_samples(system, band)
     needed = of(r)
@@ -210,6 +234,6 @@ def largest_stick(system: System, band: Band, mu: float | None) -> Extreme:
         beside = of_contacts(np.array(best), at * (1.0 + sign * _POLE))
         inside &= beside < 0.5 * most
     most = np.where(inside, np.inf, most)
-    scales = most if phases else _scales(system, most[np.newaxis], mu)[0]
+    scales = most if joint else _scales(system, most[np.newaxis], mu)[0]
     j = int(np.argmax(scales))
     return Extreme(float(scales[j]), float(at[j]))

@@ -11,7 +11,15 @@ from ..model.system import System
 from ..solvers.choose import engine_of
 from .band import Band
 from .extremes import brackets_of, chosen, joined, refine_maxima
-from .limits import may_reach, needed_friction, no_stop_limit, no_stop_samples, stick_limit, stick_samples
+from .limits import (
+    is_joint,
+    may_reach,
+    needed_friction,
+    no_stop_limit,
+    no_stop_samples,
+    stick_limit,
+    stick_samples,
+)
 from .minimum import Points, changes, crossing
 
 #: A boundary is looked for within these distances from the working point, over its r, one after the other,
@@ -32,7 +40,7 @@ class Limit(NamedTuple):
 
 def stick_at(system: System, beta: float, mu: float) -> Limit:
     """The boundary beta_stick = beta: where a contact needs the friction that it has."""
-    if system.contact_system.has_phases:
+    if is_joint(system):
         return Limit(
             lambda r: (stick_limit(system, r, mu) - beta)[:, np.newaxis],
             partial(stick_samples, system),

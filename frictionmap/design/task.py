@@ -18,11 +18,11 @@ from .band import Band, checked_band, peak_samples
 from .limits import (
     Extreme,
     has_no_stop_limit,
-    has_stick_limit,
     largest_stick,
     least_no_stop,
     starts_matter,
     stick_limit,
+    unknown_stick,
 )
 from .performance import Performance
 from .responses import Response, Responses, checked_response
@@ -159,11 +159,12 @@ def range_of_friction(system: System, band: Band, spread: float = 0.0) -> tuple[
     InputError
         The boundary to sticking is infinite or 0 over the whole band.
     """
-    if not has_stick_limit(system):
+    unknown = unknown_stick(system)
+    if unknown:
         raise InputError(
             "beta",
-            "must be two friction ratios with piecewise linear springs or contacts without friction: the "
-            "friction that holds has no closed form there; got none",
+            f"must be two friction ratios with {unknown}: the friction that holds has no closed form there; "
+            f"got none",
         )
     stick = stick_limit(system, band.samples(_SOME, np.empty(0)), None)
     finite = stick[np.isfinite(stick) & (stick > 0.0)]

@@ -18,7 +18,8 @@ from .boundaries import find_boundaries, stays_at_rest
 from .certificate import certified_beta
 from .cycle import equivalent_of, first_harmonics, harmonic_values, parts, phase_values, work_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
-from .held import held_forces, held_ranges
+from .held import held_ranges, possible_forces
+from .loops import undetermined_forces
 from .maps import solve_cells
 from .observed import wants_further
 from .outputs import is_wanted, output_values
@@ -28,6 +29,9 @@ from .steps import Steps, cell_steps
 
 #: Scalars of every cell.
 _ALWAYS = ("regime", "contact_regime", "stops_per_cycle", "slips_per_cycle", "period", "status")
+
+#: Numbers of the quantity "amplitude".
+_SIZES = ("amplitude", "contact_amplitude", "peak_to_peak", "contact_peak_to_peak")
 
 _OFFERED = ("amplitude", "phase", "first_harmonic", "energy", "harmonics", *RECORDED)
 
@@ -45,8 +49,7 @@ def _cell(system: System, steps: Steps, asked: CurveSettings) -> dict[str, np.nd
     values = {name: found[name] for name in (*_ALWAYS, *RECORDED) if name in found}
     phasors = harmonic_values(system, steps, max(1, asked.harmonics))
     if "amplitude" in quantities:
-        for name in ("amplitude", "contact_amplitude", "peak_to_peak", "contact_peak_to_peak"):
-            values[name] = found[name]
+        values |= {name: found[name] for name in _SIZES}
     if "phase" in quantities:
         values |= phase_values(steps)
     if "first_harmonic" in quantities:
@@ -88,7 +91,7 @@ def _held(system: System, r: float, lowest: np.ndarray, highest: int) -> _Held:
     """
     general, at = general_of(system), np.array([r])
     count, n = general.count, system.n
-    forces, motions = held_forces(system, at)
+    forces, motions = possible_forces(system, at)
     whole = max(highest, *motions)
     x, z, f = (np.zeros((rows, whole + 1), dtype=complex) for rows in (n, count, count))
     damping, moved = 0.0, np.array([float(group.base) for group in general.groups])
@@ -104,6 +107,8 @@ def _held(system: System, r: float, lowest: np.ndarray, highest: int) -> _Held:
         place = lowest[: count + n] - held_ranges(system, at)[0][0]
         z[:, 0], x[:, 0] = place[:count], place[count:]
     f[:, 0] = _constant_forces(system, x[:, 0].real)
+    if general.loop:
+        f[undetermined_forces(general.vectors.T, np.ones((1, count), dtype=bool))[0]] = np.nan
     return _Held({"displacement_harmonic": x, "contact_harmonic": z, "friction_harmonic": f}, damping)
 
 
@@ -146,18 +151,12 @@ def _stuck(
         further=wants_further(system, asked.quantities),
     )  # fmt: skip
     names = [*_ALWAYS, *(name for name in RECORDED if name in asked.quantities)]
+    names += _SIZES if "amplitude" in asked.quantities else ()
     if "energy" in asked.quantities:
         names += ["sliding_distance", "work_friction", "work_wall"]
     values = {name: output_values(name, system, cells)[0, 0, 0] for name in names}
-    low, high = cells.lowest[0, 0, 0], cells.highest[0, 0, 0]
-    ranges = high - low
-    moduli = 0.5 * ranges if system.rigid_modes else np.maximum(high, -low)  # about the middle, as of maps
-    if "amplitude" in asked.quantities:
-        rigid = ~general.elastic
-        for name, table in (("amplitude", moduli), ("peak_to_peak", ranges)):
-            values[name] = table[general.count : general.count + system.n]
-            values[f"contact_{name}"] = np.where(rigid, 0.0, table[: general.count])
-    return values | _held_quantities(_held(system, point[1], low, asked.harmonics), asked)
+    held = _held(system, point[1], cells.lowest[0, 0, 0], asked.harmonics)
+    return values | _held_quantities(held, asked)
 
 
 def of_cells(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
@@ -191,7 +190,7 @@ def general_curves(
         raise InputError("r", "must be > 0 for response curves of such systems; got 0")
     count = general.count
     limits = find_boundaries(system, r, mu)
-    problem, modal = problem_of(system, r, float(beta.max()))
+    problem, modal = problem_of(system, r, float(beta.max()), loops=True)
     from_rest = stays_at_rest(system, solver.start)
     equal, certified = [general.has_equal_friction(float(one)) for one in mu], certified_beta(system)
     further = wants_further(system, asked.quantities)

@@ -135,7 +135,7 @@ def _direct(general: ContactSystem, order: int) -> np.ndarray:
 def held_displacements(system: System, r: np.ndarray) -> dict[int, np.ndarray]:
     """Displacements (n_r, n) of masses, or points, with all contacts held, by order; inf at a resonance."""
     general = general_of(system)
-    forces, motions = held_forces(system, r)
+    forces, motions = possible_forces(system, r)
     return {n: general.displacements(n, motion, forces[n]) for n, motion in motions.items()}
 
 
@@ -145,7 +145,7 @@ def held_ranges(system: System, r: np.ndarray, further: bool = False) -> tuple[n
     Infinite at a resonance; 0 in rigid contacts.  With `further` also what else is observed, see `observed`.
     """
     general = general_of(system)
-    motions = possible_forces(system, r)[1] if general.loop else held_displacements(system, r)
+    motions = held_displacements(system, r)
     orders = np.array(list(motions), dtype=float)
     x = np.stack(list(motions.values()), axis=-1)  # (n_r, n, H)
     more = [observed_phasors(system, n, r, one) for n, one in motions.items()] if further else []

@@ -164,10 +164,12 @@ def _by_instants(
     return found
 
 
-def loop_stick_scales(system: System, r: np.ndarray, mu: np.ndarray) -> np.ndarray:
+def loop_stick_scales(system: System, r: np.ndarray, mu: np.ndarray, kinetic: bool = False) -> np.ndarray:
     """Find the beta from which contacts that close a loop stick permanently, (n_mu, n_r).
 
     NaN under even harmonics: the best places of the contacts depend on each other.
+
+    kinetic : whether kinetic friction alone holds them, so that every motion comes to rest
     """
     general = general_of(system)
     refuse_further_loops(general, np.ones(0))
@@ -181,9 +183,10 @@ def loop_stick_scales(system: System, r: np.ndarray, mu: np.ndarray) -> np.ndarr
     if few:
         vectors = elementary_vectors(w)
         needed = half_range({n: force @ vectors.T for n, force in forces.items()})  # (n_r, vectors)
+    which = 0 if kinetic else 1
     for m, value in enumerate(mu):
-        own = np.array([group.friction(0.0, float(value))[1] for group in general.groups])
-        slope = np.array([group.friction(1.0, float(value))[1] for group in general.groups]) - own
+        own = np.array([group.friction(0.0, float(value))[which] for group in general.groups])
+        slope = np.array([group.friction(1.0, float(value))[which] for group in general.groups]) - own
         if few:
             sizes = np.abs(vectors)
             found[m] = _scale_of(needed, sizes @ own, sizes @ slope).max(axis=1)

@@ -223,7 +223,8 @@ def refuse_loop(general: ContactSystem) -> None:
         raise InputError(
             "cannot use",
             "contacts",
-            f"{general.loop} together: {LOOP}; leave one out, or use map, response or boundaries",
+            f"{general.loop} together: {LOOP}; leave one out, or use map, response, curves, design or "
+            f"boundaries",
         )
 
 

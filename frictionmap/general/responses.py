@@ -8,6 +8,7 @@ from ..jobs import Watch
 from ..model.settings import Solver
 from ..model.sizes import Sizes, Wanted, sizes_of_points
 from ..model.system import System
+from .boundaries import find_boundaries
 from .held import least_static_friction, stick_scales
 from .maps import solve_cells
 from .outputs import number, output_values
@@ -21,15 +22,33 @@ def sizes_on_grid(
     watch: Watch | None,
 ) -> Sizes:  # fmt: skip
     """Sizes over r and beta (n_beta,), or beta (n_r, n_beta), at one mu, (n_r, n_beta)."""
-    needed = least_static_friction(system, axes["r"])
-    stick = stick_scales(general_of(system), needed, axes["mu"]).max(axis=2)
+    stick = _stick(system, axes)
     found = solve_cells(system, axes, stick, solver, threads, None, watch, masses=True)
     if wanted.quantity == "amplitude":
         size = _amplitude(system, found, bool((axes["mu"] == 1.0).all()))[0, ..., wanted.row]
     else:
-        size = output_values("contact_amplitude", system, found)[0, ..., wanted.contact]
+        size = _contact_sizes(system, found)[0, ..., wanted.contact]
     stops = np.nan_to_num(number("stops", found)[0]).max(axis=-1)
     return Sizes(size, found.regime[0], stops, found.status[0])
+
+
+def _stick(system: System, axes: dict[str, np.ndarray]) -> np.ndarray:
+    """Friction ratios from which all contacts stick permanently, (n_mu, n_r)."""
+    general, mu, r = general_of(system), axes["mu"], axes["r"]
+    if general.loop:
+        return find_boundaries(system, r, mu).beta_stick
+    return np.asarray(stick_scales(general, least_static_friction(system, r), mu).max(axis=2))
+
+
+def _contact_sizes(system: System, found: Cells) -> np.ndarray:
+    """Largest displacement in each contact, (..., N); of contacts that close loops, whose places are not
+    looked for, about the middle, as of `_amplitude`.
+    """
+    general = general_of(system)
+    if not general.loop or not is_symmetric(general):
+        return output_values("contact_amplitude", system, found)
+    ranges = output_values("contact_peak_to_peak", system, found)
+    return np.asarray(0.5 * ranges + np.abs(static_offset(system)[0]) * (ranges > 0.0))
 
 
 def _amplitude(system: System, found: Cells, flat: bool) -> np.ndarray:

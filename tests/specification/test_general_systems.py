@@ -313,28 +313,16 @@ NOT_OFFERED = [
 
 
 @pytest.mark.parametrize(
-    "call",
-    [
-        lambda s: fm.curves(s, [0.5], [0.1]),
-        lambda s: fm.design.stuck(s, (0.4, 0.6)),
-    ],
-)
-def test_curves_and_designs_of_a_loop_are_refused(call):
-    with pytest.raises(fm.InputError, match="cannot use contacts 1, 2, 3 together: they close a loop"):
-        call(fm.System(contacts=LOOP, **THREE))
-
-
-@pytest.mark.parametrize(
     ("further", "named"),
     [([(4, 5)], "1, 2, 3"), ([(4, 5), (5, 6), (4, 6)], "1, 2, 3, 4, 5, 6")],
     ids=["a loop and a contact", "two loops"],
 )
-def test_all_contacts_of_loops_are_named_and_no_others(further, named):
+def test_motions_in_time_refuse_loops_and_name_all_of_their_contacts_and_no_others(further, named):
     pairs = [(1, 2), (2, 3), (1, 3), *further]
     contacts = [fm.Contact("between-masses", pair) for pair in pairs]
     system = fm.System(contacts=contacts, mass_ratios=[1] * 6, stiffness_ratios=[1] * 6)
     with pytest.raises(fm.InputError, match=f"cannot use contacts {named} together: they close a loop"):
-        fm.curves(system, [0.5], [0.1])
+        fm.history(system, fm.Record([0.0, 1.0, 0.0], 0.1, quantity="force"), 0.1)
 
 
 def test_even_harmonics_leave_the_boundary_of_a_loop_unknown():

@@ -144,14 +144,14 @@ def _stuck(
 
     point, stick : mu, r and beta; beta_stick
     """
-    general = general_of(system)
     axes = {name: np.array([value]) for name, value in zip(("mu", "r", "beta"), point, strict=True)}
     cells = solve_cells(
         system, axes, np.array([[stick]]), solver, 1, None, None, masses=True,
         further=wants_further(system, asked.quantities),
     )  # fmt: skip
     names = [*_ALWAYS, *(name for name in RECORDED if name in asked.quantities)]
-    names += _SIZES if "amplitude" in asked.quantities else ()
+    if "amplitude" in asked.quantities:
+        names += _SIZES
     if "energy" in asked.quantities:
         names += ["sliding_distance", "work_friction", "work_wall"]
     values = {name: output_values(name, system, cells)[0, 0, 0] for name in names}

@@ -68,8 +68,8 @@ class Spring(Shown):
     Parameters
     ----------
     masses : int, str or sequence of them
-        The mass that it connects to the ground, or the two masses [A, B], A < B, counted from 1.  Its
-        displacement is that of the mass, or x_B - x_A.
+        The mass that it connects to the ground, which a moving base does not move, or the two masses [A, B],
+        A < B, counted from 1.  Its displacement is that of the mass, or x_B - x_A.
     gap : float, optional
         Free displacement [-] over P/k_1, >= 0, on the side of `side`: a stop that touches there.
     backlash : float, optional

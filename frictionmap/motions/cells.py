@@ -86,7 +86,7 @@ class Kernels(NamedTuple):
 
     problem: Any
     friction: Any
-    memory: Callable[[Course, np.ndarray], tuple[Any, Kept]]  # with room for so many events and states
+    memory: Callable[[Course, np.ndarray], tuple[Any, Kept]]  # by the room for events and states
     bed: Callable[[Any], Any]  # of the phase in which a memory is; None: the one to begin with
 
 

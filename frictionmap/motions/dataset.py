@@ -304,8 +304,6 @@ def _follow(
     """Follow all motions; wanted: the states at events, and the forces with all contacts held."""
     general = structure.system.contact_system
     factors = [scale_of(one, scales) for one in grid.records]
-    kind: type[Motions]
-    held: Callable[..., np.ndarray]
     kind, held = (
         (OpeningMotions, opening_holding_friction) if general.has_phases else (Motions, holding_friction)
     )

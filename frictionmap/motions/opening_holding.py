@@ -12,7 +12,7 @@ import numpy as np
 
 from .._kernels.history.course import RESOLVED
 from .._kernels.phases.problem import LIFTOFFS, SMOOTH, Cell
-from .cells import Asked, Ran
+from .cells import Asked, Motions, Ran
 from .holding import HOLDS, MOST_PERIODS, SAME
 from .opening import OpeningMotions, pattern_of, state_of
 from .phase_beds import bed_of
@@ -27,10 +27,9 @@ class _Held(NamedTuple):
     weights: np.ndarray  # (2 M N, Q) f - mu phi kn d.x and -f - mu phi kn d.x of the others
 
 
-def opening_holding_friction(
-    motions: OpeningMotions, scale: np.ndarray, mu: np.ndarray, asked: Asked
-) -> np.ndarray:
+def opening_holding_friction(motions: Motions, scale: np.ndarray, mu: np.ndarray, asked: Asked) -> np.ndarray:
     """Static friction at preload that holds the contacts, (scales, mu, N); NaN where a gap closes."""
+    assert isinstance(motions, OpeningMotions)
     held = _held(motions, mu)
     return np.array([_at_scale(motions, held, float(one), asked) for one in scale])
 

@@ -39,7 +39,7 @@ def _both(name: str) -> tuple:
 
 
 @by_class(*_both("begin"))
-def _begin(memory, problem, friction, course, start, senses):
+def _begin(memory, problem, friction, course, start, senses, kept):
     """Set the state and the pattern at the start; False if the contacts do not determine their forces."""
 
 
@@ -66,7 +66,7 @@ def _follow_part(memory, problem, friction, course, kept, part, jump, listed):
     ----------
     memory, problem, friction, course, kept : see `follow_record`
     part : number of the part; its polynomials are in `memory.channels`
-    jump : whether the load jumps where the interval begins
+    jump : the interval, if the load jumps where it begins, else -1
     listed : whether the states at events are kept
     """
 
@@ -102,7 +102,7 @@ def _follow_interval(memory, problem, friction, course, kept, done, listed):
     listed : whether the states at events are kept
     """
     k = min(done, course.steps.size - 1)
-    jump = course.jumps[k] and done == k and done > 0
+    jump = k if course.jumps[k] and done == k and done > 0 else -1
     step = course.steps[k]
     parts = parts_of(_rate_of(memory, problem, friction), step)
     _set_length(memory, problem, step / parts)
@@ -176,7 +176,7 @@ def follow_record(problem, friction, memory, course, start, senses, kept, bed, l
         clear_record(kept.record)
         state[DONE] = 0
         kept.clock[0] = course.times[0]
-        if not _begin(memory, problem, friction, course, start, senses):
+        if not _begin(memory, problem, friction, course, start, senses, kept):
             return UNDETERMINED
         for j in range(memory.motion.sense.size):
             if memory.motion.sense[j] != 0:

@@ -35,6 +35,7 @@ _RATIOS = {
     "dof": COORDINATES["dof"],
     "contact": BESIDE["contact"],
     "contact_name": BESIDE["contact_name"],
+    "point_name": BESIDE["point_name"],
     "time": Label(np.float64, "time since the beginning, over 1/omega_1", ("time",), least=0.0),
     "friction_force": BESIDE["friction_force"],
     "friction_coefficient": BESIDE["friction_coefficient"],
@@ -140,6 +141,6 @@ OF_CONTACTS = (
 
 #: Coordinates; the others are variables.
 AXES = (
-    *CELL, "dof", "time", "time_s", "contact", "contact_name", "wall_speed_m_s", "friction_force",
-    "friction_coefficient", "spring", "spring_name",
+    *CELL, "dof", "point_name", "time", "time_s", "contact", "contact_name", "wall_speed_m_s",
+    "friction_force", "friction_coefficient", "spring", "spring_name",
 )  # fmt: skip

@@ -14,7 +14,7 @@ import numpy as np
 from ..model.contact import WALLS
 from ..model.general import contacts_of
 from ..model.matrices import Matrices
-from ..structures.modes import Modes
+from ..structures.modes import OF_BASE, Modes
 
 if TYPE_CHECKING:
     from ..model.contact import Contact
@@ -181,6 +181,7 @@ def _modes_line(modes: Modes) -> str:
     table = {"frequencies": modes.w.tolist(), "points": list(modes.points), "shapes": modes.shapes.tolist()}
     if modes.residual is not None:
         table["residual"] = modes.residual.tolist()
+    table |= {name: own.tolist() for name in OF_BASE if (own := getattr(modes, name)) is not None}
     return f"modes = {value_text({**table, 'normalised': 'mass'})}"
 
 

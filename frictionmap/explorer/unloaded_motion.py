@@ -11,7 +11,7 @@ from ..no_load.belts import belts_of
 from ..no_load.response import belt_response
 from ..pictures.palette import NO_LOAD
 from .belt_classes import LOOKS
-from .drawing import OPEN, drawing_of, mass_names
+from .drawing import OPEN, drawing_of, mass_names, vectors_of
 from .numbers import Number
 from .quantities import name_of_mass
 from .unloaded import limits_of, one_cell
@@ -105,11 +105,11 @@ def _curves(
     view: View, values: Mapping[str, np.ndarray], speed: float, period: float
 ) -> dict[str, np.ndarray]:
     """Curves of a motion, float32: of the contact that is shown, or one row per contact."""
-    general, belts = view.system.contact_system, belts_of(view.system)
+    belts = belts_of(view.system)
     k, several = view.shown, view.shown is None
     tau = values["time"] * (2.0 * np.pi / period if np.isfinite(period) else 1.0)
     direction = _rows(values, "direction")
-    rate = general.vectors @ values["v"]
+    rate = vectors_of(view.system) @ values["v"]
     rate = np.where(direction == 0, speed * belts.share[:, np.newaxis], rate)  # stuck, it is that of the belt
     opened = _rows(values, "open") if "open" in values else np.zeros_like(direction)
     states = np.where(opened == 1, OPEN, direction).astype(np.int8)

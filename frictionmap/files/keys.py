@@ -268,7 +268,8 @@ _MODES = either(
             "frequencies": several(either(number(least=0.0), with_unit("frequency"))),
             "damping_ratios": either(_ZETA, several(_ZETA)), "points": several(_NAME), "shapes": _MATRIX,
             "residual": _MATRIX, "compliance": _MATRIX, "modal_masses": several(number(above=0.0)),
-            "normalised": word("mass"),
+            "normalised": word("mass"), "participation": several(number()), "influence": several(number()),
+            "base_residual": several(number()),
         },
         ("frequencies", "shapes"),
     ),
@@ -282,7 +283,8 @@ STRUCTURE_KEYS = (
         _MODES,
         example='{ frequencies = ["31.2 Hz"], points = ["tip"], shapes = [[1.9]], normalised = "mass" }',
         words="{ frequencies, damping_ratios, points, shapes, residual or compliance, and modal_masses or "
-        'normalised = "mass" }; or a file (.npz, .mat, .csv, .uff), also as { file, points, normalised }',
+        'normalised = "mass"; for records of a base participation, influence, base_residual }; or a file '
+        "(.npz, .mat, .csv, .uff), also as { file, points, normalised }",
     ),
     Key(
         "beam",
@@ -754,9 +756,10 @@ KEYS: dict[str, tuple[Key, ...]] = {
         Key(
             "start",
             "the state at the beginning",
-            either(_NAME, table({"x": several(number()), "v": several(number())})),
+            either(_NAME, table({name: several(number()) for name in ("x", "v", "q", "q_rate")})),
             "rest",
-            words='"rest", { x, v } with a number per mass, or the file of a motion',
+            words='"rest", { x, v } with a number per mass, { q, q_rate } with one per given mode, or the '
+            "file of a motion",
         ),
         Key(
             "samples",

@@ -26,7 +26,7 @@ from ..units.table import UNITS, handy_unit
 _WIDTH = 34
 
 #: Coordinates that are not axes of the same name.
-_BESIDE = ("contact_name", "record_name")
+_BESIDE = ("contact_name", "record_name", "point_name")
 
 #: Motions of a summary at most.
 _MOST_LINES = 8

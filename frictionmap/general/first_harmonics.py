@@ -11,6 +11,7 @@ from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines, rest_states
 from .held import held_displacements, least_static_friction, stick_scales
+from .observed import has_residual
 from .problem import general_of, problem_of
 from .recorded import recorded_state
 
@@ -57,6 +58,7 @@ def _follow(
     """
     at, index = frequencies
     problem, modal = problem_of(system, at)
+    general = general_of(system)
     kinetic, _ = friction_lines(system, np.ones(1))
     starts, solver = rest_states(system, modal, at), Solver()
     no_masses = np.empty((0, modal.squares.size))  # their displacements are not recorded: modes are enough
@@ -70,6 +72,15 @@ def _follow(
             continue
         parts = np.empty((2, modal.squares.size))
         fill_phasors(record.steps, record.patterns, steps, h, parts)
-        found[0][k] = modal.phi @ (parts[0] + 1j * parts[1])
+        q = modal.phi @ (parts[0] + 1j * parts[1])
+        forces = _forces(system, float(at[index[k]]), q) if has_residual(system) else np.zeros(general.count)
+        found[0][k] = general.displacements(1, q[np.newaxis], forces[np.newaxis])[0]
         moves = counts[MOVED].any()
         found[1][k] = regimes.STICK_SLIP if moves else regimes.PERMANENT_STICKING
+
+
+def _forces(system: System, r: float, q: np.ndarray) -> np.ndarray:
+    """First harmonics of the forces in contacts, (N,), that a motion q (n,) in balance with its load has."""
+    general, modes = general_of(system), system.modes
+    inner = (modes.stiffness - r * r * modes.mass + 1j * r * modes.damping) @ q
+    return np.asarray(np.linalg.lstsq(general.vectors.T, general.forces[1] - inner)[0])

@@ -11,7 +11,7 @@ import numpy as np
 from .. import checks
 from ..errors import InputError
 from ..structures.mode_files import read_modes
-from ..structures.modes import Modes
+from ..structures.modes import OF_BASE, Modes
 from ..structures.uniform import Beam, Plate
 from .general import ContactSystem
 from .modes import ModalModel
@@ -33,7 +33,7 @@ _OF_FILES = ("file", "points", "normalised")
 
 #: Keys of modes given as a mapping.
 _KEYS = ("frequencies", "damping_ratios", "points", "shapes", "residual", "compliance", "modal_masses",
-         "normalised")  # fmt: skip
+         "normalised", *OF_BASE)  # fmt: skip
 
 
 #: Natural frequencies that are described.
@@ -131,7 +131,7 @@ def _from_mapping(given: Mapping[Any, Any]) -> Modes:
             raise InputError("modes", f"must have {key}; got {', '.join(map(str, given)) or 'nothing'}")
     return Modes(
         given["frequencies"], given.get("damping_ratios"), normalised_shapes(given), given.get("points"),
-        given.get("residual"), given.get("compliance"),
+        given.get("residual"), given.get("compliance"), **{name: given.get(name) for name in OF_BASE},
     )  # fmt: skip
 
 
@@ -176,10 +176,11 @@ def on_modes(system: Owner, modes: Modes, contacts: ContactSystem, frequency: fl
 
     frequency : at r = 1
     """
-    if system.excitation == "base":
+    if system.excitation == "base" and modes.participation is None:
         raise InputError(
             "excitation",
-            "must be force for modes, as the load by a moving base is not known from them; got 'base'",
+            "must be force for modes without participation, as the load by a moving base is not known from "
+            "them; got 'base'",
         )
     if contacts.has_phases:
         raise InputError(
@@ -199,12 +200,25 @@ def on_modes(system: Owner, modes: Modes, contacts: ContactSystem, frequency: fl
             "= 'contact', or more than 64 elements, with modes and a residual flexibility: it is a spring in "
             "series with the bank; use up to 64 elements and bank = 'elements', or leave out the residual",
         )
-    points = Points(shapes, contacts.vectors, contacts.forces, contacts.offset, residual)
+    points = Points(
+        shapes, contacts.vectors, contacts.forces, contacts.offset, residual,
+        *_of_base(modes, frequency, system.stiffness_scale, residual is not None),
+    )  # fmt: skip
     check_residual(points, contacts.groups)
     for group in contacts.groups:
         if not (shapes.T @ group.vector).any():
             raise InputError("modes", f"must move the contact {group.name}; got zeros in all of them")
     return contacts.in_modes(points)
+
+
+def _of_base(
+    modes: Modes, frequency: float, stiffness: float, softer: bool
+) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray | None]:
+    """What a base that moves does, dimensionless: three attributes of `Points`."""
+    if modes.participation is None:
+        return None, None, None
+    rest = modes.base_residual * frequency**2 if softer and modes.base_residual is not None else None
+    return modes.participation * (frequency / np.sqrt(stiffness)), modes.influence, rest
 
 
 def describe_modes(system: Owner) -> str:

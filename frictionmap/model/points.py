@@ -34,6 +34,14 @@ class Points:
     loads: Mapping[int, np.ndarray]  # phasors (p,) of the loads, by order
     offset: np.ndarray  # (p,) constant loads
     residual: np.ndarray | None  # (p, p) R
+    participation: np.ndarray | None = None  # (m,) loads on the modes by a unit acceleration of the base
+    influence: np.ndarray | None = None  # (p,) displacements by a unit one of the base; None: 1
+    base_residual: np.ndarray | None = None  # (p,) displacements by that load which the modes leave out
+
+    @property
+    def carried(self) -> np.ndarray:
+        """Displacements of the points by a unit displacement of the base, as of a rigid body, (p,)."""
+        return np.ones(len(self.shapes)) if self.influence is None else self.influence
 
     @property
     def of_contacts(self) -> np.ndarray:

@@ -67,7 +67,7 @@ def averages_of(
         one = one.assign_coords(time=one["time"] / factor)
         inside = one["time"].values <= record.duration * (1.0 + 1e-12)  # the last sample, rounded
         one = one.isel(time=inside & np.isfinite(one["drive"].values))
-        for of in AVERAGED:
+        for of in (name for name in AVERAGED if name in one):
             for end, values in _statistics_of(one[of], asked).items():
                 found.setdefault(f"{of}_{end}", []).append(values)
     added = {}

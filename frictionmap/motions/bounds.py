@@ -87,7 +87,9 @@ def friction_bounds(system: System, ds: xr.Dataset, step: float, *, units: Units
 
 def _displacements(structure: Structure, root: xr.DataArray | float) -> xr.Dataset:
     """How far displacements of masses, and motions in contacts, can be apart at a bound of sqrt(2 E)."""
-    masses = xr.DataArray(displacement_bounds(structure, structure.modal.phi), dims="dof")
+    if structure.softer:  # points move beside the modes, too
+        root = np.nan * root
+    masses = xr.DataArray(displacement_bounds(structure, structure.shapes), dims="dof")
     contacts = xr.DataArray(displacement_bounds(structure, structure.modal.chi), dims="contact")
     return xr.Dataset({"amplitude": root * masses, "contact_amplitude": root * contacts})
 

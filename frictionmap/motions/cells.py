@@ -144,7 +144,8 @@ class Motions:
         """
         steps, limits = self.limits_of(asked, events and asked.every > 0)
         terms = np.ascontiguousarray(self.terms_of(scale, steps))
-        course = Course(terms, steps, self.drive.times, self.drive.jumps, self.ties)
+        drive = self.drive
+        course = Course(terms, steps, drive.times, drive.jumps, self.ties, drive.direct)
         start, room = starting(self.structure, asked.start), room_for(asked, steps, limits)
         while True:
             memory, kept = kernels.memory(course, room)
@@ -252,10 +253,23 @@ class Motions:
             return self.held.rest @ self.state_at_end(one)
         return one.state[0] if one.status == CREEPING else None
 
+    def _beside(self, one: Found) -> np.ndarray:
+        """What forces in contacts displace beside the modes where these come to rest, (p,)."""
+        forces = self.held.bed.forces @ self.state_at_end(one)
+        return self.structure.beside_modes(one.kept.forces if one.status == CREEPING else forces)
+
+    def places(self, one: Found) -> np.ndarray:
+        """Where the masses, or points, come to rest, (n,)."""
+        found = np.asarray(self.structure.shapes @ one.place)
+        return found + self._beside(one) if self.structure.softer else found
+
     def contact_places(self, one: Found) -> np.ndarray:
         """Where the contacts come to rest, (N,)."""
         assert one.place is not None
         moving = self.problem.base @ self.drive.terms[-1, :, 1] != 0.0
         walls = one.scale * self.drive.terms[-1, :, 0]
         places = self.problem.chi @ one.place - self.problem.base @ walls
+        points = self.structure.points
+        if points is not None and self.structure.softer:
+            places = places + points.vectors @ self._beside(one)
         return np.where(moving, np.nan, places)

@@ -22,7 +22,8 @@ class Channel(NamedTuple):
     base: np.ndarray  # (N,) displacement of the walls
     normal: np.ndarray  # (N,) variation of the normal loads
     moves_on: bool = False  # whether it goes on at its last rate after the record, as a base does
-    place: bool = False  # whether it is the displacement of the base
+    of_base: bool = False  # whether it is the displacement of the base
+    place: np.ndarray | None = None  # (p,) displacement of points beside that by modes
 
 
 class Drive(NamedTuple):
@@ -36,7 +37,9 @@ class Drive(NamedTuple):
     base: np.ndarray  # (N, D)
     normal: np.ndarray  # (N, D)
     acceleration: np.ndarray  # (D,) 1 where the channel is the acceleration of the base
-    place: np.ndarray  # (D,) bool: whether it is the displacement of the base
+    of_base: np.ndarray  # (D,) bool: whether the channel is the displacement of the base
+    place: np.ndarray  # (p, D) displacements of masses, or points, beside those by modes
+    direct: np.ndarray  # (N, D) what of `base` these displacements are
 
 
 class Scale(NamedTuple):
@@ -46,7 +49,7 @@ class Scale(NamedTuple):
     value: float
 
 
-def _force(system: System, record: Record, contacts: int, pieces: Pieces) -> list[Channel]:
+def _force(system: System, general: ContactSystem, record: Record, pieces: Pieces) -> list[Channel]:
     vector = np.zeros(system.n)
     if record.vector is not None:
         if len(record.vector) != system.n:
@@ -57,8 +60,14 @@ def _force(system: System, record: Record, contacts: int, pieces: Pieces) -> lis
     else:
         mass = system.load_mass if record.mass is None else record.mass
         vector[system.dofs.row(system.dofs.number(1 if mass is None else mass, "mass"))] = 1.0
-    still = np.zeros(contacts)
-    return [Channel(pieces, vector, still, still)]
+    still, points = np.zeros(general.count), general.points
+    if points is None:
+        return [Channel(pieces, vector, still, still)]
+    push = points.shapes.T @ vector
+    if points.residual is None:
+        return [Channel(pieces, push, still, still)]
+    place = points.residual @ vector
+    return [Channel(pieces, push, -(points.vectors @ place), still, place=place)]
 
 
 def _motion_of_base(record: Record, given: Pieces) -> tuple[Pieces, Pieces, Pieces]:
@@ -82,8 +91,41 @@ def wall_shares(system: System) -> np.ndarray:
 
     A wall at rest moves by -u.
     """
-    groups = system.contact_system.groups
-    return np.array([float(group.base) - group.vector.sum() for group in groups])
+    general = system.contact_system
+    points = general.points
+    if points is not None:
+        return np.array([float(group.base) for group in general.groups]) - points.vectors @ points.carried
+    return np.array([float(group.base) - group.vector.sum() for group in general.groups])
+
+
+def _iota(system: System, general: ContactSystem) -> np.ndarray:
+    """Coordinates of the structure by a unit displacement of the base: of modes their participation, (n,)."""
+    points = general.points
+    if points is None:
+        return np.ones(system.n)
+    if points.participation is None:
+        raise InputError(
+            "cannot follow motions of the base of a structure given by modes without participation, which is "
+            "their load by a base that moves; give participation, or a beam or plate with a support"
+        )
+    return points.participation
+
+
+def _under_base(system: System, general: ContactSystem, acceleration: Pieces) -> Channel:
+    """The inertia of a structure whose base moves, relative to which it vibrates."""
+    push, still = -system.modes.mass @ _iota(system, general), np.zeros(general.count)
+    points = general.points
+    if points is None or points.residual is None:
+        return Channel(acceleration, push, still, still)
+    if points.base_residual is None:
+        raise InputError(
+            "cannot use",
+            "residual",
+            "under a motion of the base without base_residual, what this load displaces beside the modes; "
+            "give base_residual, or omit residual",
+        )
+    place = -points.base_residual
+    return Channel(acceleration, push, -(points.vectors @ place), still, place=place)
 
 
 class Ground(NamedTuple):
@@ -119,18 +161,18 @@ def sees_place(system: System) -> bool:
 
 
 def _base(system: System, general: ContactSystem, record: Record, pieces: Pieces) -> list[Channel]:
-    iota, still = np.ones(system.n), np.zeros(general.count)
+    still = np.zeros(general.count)
     grounded = not is_relative_damping(system) and system.modes.damping.any()
     placed = sees_place(system)
     if record.quantity == "acceleration" and not placed and not grounded:  # no integrals
-        return [Channel(pieces, -system.modes.mass @ iota, still, still)]
+        return [_under_base(system, general, pieces)]
     place, rate, acceleration = _motion_of_base(record, pieces)
-    found = [Channel(acceleration, -system.modes.mass @ iota, still, still)]
+    found = [_under_base(system, general, acceleration)]
     if placed:
-        moves_on = record.quantity != "displacement"
-        found.append(Channel(place, np.zeros(system.n), wall_shares(system), still, moves_on, True))
+        none, moves_on = np.zeros(found[0].push.size), record.quantity != "displacement"
+        found.append(Channel(place, none, wall_shares(system), still, moves_on, True))
     if grounded:
-        push = -system.modes.damping @ iota
+        push = -system.modes.damping @ _iota(system, general)
         found.append(Channel(rate, push, still, still, record.quantity != "displacement"))
     return found
 
@@ -166,11 +208,11 @@ def _goes_on(one: Channel, end: float) -> Pieces:
     """The pieces of a channel up to a common end: a base that another record outlasts keeps its place."""
     pieces = one.pieces
     rest = end - pieces.times[-1]
-    if rest <= 0.0 or not (one.place or one.moves_on):
+    if rest <= 0.0 or not (one.of_base or one.moves_on):
         return pieces
     last = np.zeros((1, pieces.terms.shape[1]))
     last[0, 0] = pieces.ends[-1]
-    if one.moves_on and one.place:
+    if one.moves_on and one.of_base:
         last[0, 1] = pieces.terms[-1] @ np.arange(last.size) / pieces.steps[-1] * rest
     return Pieces(
         np.append(pieces.times, end), np.append(pieces.steps, rest), np.vstack((pieces.terms, last))
@@ -182,7 +224,7 @@ def drive_of(system: System, record: Record, scale: Scale) -> Drive:
     general = system.contact_system
     pieces = scaled(record.pieces, *scale)
     if record.quantity == "force":
-        channels = _force(system, record, general.count, pieces)
+        channels = _force(system, general, record, pieces)
     else:
         channels = _base(system, general, record, pieces)
     acceleration = np.zeros(len(channels))
@@ -201,9 +243,9 @@ def drive_of(system: System, record: Record, scale: Scale) -> Drive:
     after, step = [], float(steps.max())
     for one, own in zip(channels, terms, strict=True):
         last = np.zeros((1, own.shape[1]))
-        if one.place or one.moves_on:
+        if one.of_base or one.moves_on:
             last[0, 0] = own[-1].sum()
-            if one.moves_on and one.place:
+            if one.moves_on and one.of_base:
                 last[0, 1] = own[-1] @ np.arange(own.shape[1]) / steps[-1] * step
         after.append(last)
     table = np.stack([np.vstack(pair) for pair in zip(terms, after, strict=True)], axis=1)
@@ -214,5 +256,13 @@ def drive_of(system: System, record: Record, scale: Scale) -> Drive:
         times, np.append(steps, step), np.ascontiguousarray(table), jumps,
         np.array([one.push for one in channels]).T, np.array([one.base for one in channels]).T,
         np.array([one.normal for one in channels]).T,
-        np.concatenate((acceleration, np.zeros(len(normal)))), np.array([one.place for one in channels]),
+        np.concatenate((acceleration, np.zeros(len(normal)))), np.array([one.of_base for one in channels]),
+        *_displaced(system, channels),
     )  # fmt: skip
+
+
+def _displaced(system: System, channels: list[Channel]) -> tuple[np.ndarray, np.ndarray]:
+    """What channels displace beside the modes, see `Drive`: `place` and `direct`."""
+    place = [np.zeros(system.n) if one.place is None else one.place for one in channels]
+    direct = [0.0 * one.base if one.place is None else one.base for one in channels]
+    return np.array(place).T, np.ascontiguousarray(np.array(direct).T)

@@ -111,7 +111,7 @@ def least_median(
         return found[np.searchsorted(order, friction)]
 
     grid = np.linspace(ends[0], ends[1], GRID)
-    first = motions(grid)
+    first = _with(quantity, motions(grid))
     values = _values_at(abs(first[quantity]), place)
     over = np.quantile(values, quantile, axis=0)
     apart = _apart(system, first, quantity, grid[1] - grid[0], units)
@@ -133,6 +133,14 @@ def least_median(
         {"beta_search": grid, "record": np.arange(1, len(records) + 1), "offset": _OFFSETS, "value": _VALUES},
         {"quantity": quantity, "quantile": quantile},
     )  # fmt: skip
+
+
+def _with(quantity: str, ds: xr.Dataset) -> xr.Dataset:
+    """Motions that have a quantity; of structures given by modes some are not known."""
+    if quantity not in ds:
+        there = ", ".join(name for name in QUANTITIES if name in ds)
+        raise InputError("quantity", f"must be one of {there} for points of modes; got {quantity!r}")
+    return ds
 
 
 def _apart(

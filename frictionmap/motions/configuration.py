@@ -22,6 +22,7 @@ from ..files.config import (
 )
 from ..files.variants import put_variants
 from ..jobs import Progress
+from ..model.general import refuse_modes
 from ..model.system import System
 from ..model.variations import checked_variations
 from ..units.quantities import quantities
@@ -243,6 +244,7 @@ def _system_values(tree: Mapping[str, Any], path: Path, given: Mapping[str, Any]
     if "system" not in tree:
         return {}
     system = common_tables(tree, path).system
+    refuse_modes(system, "compute spectra")
     if system.n > 1 or system.contact_system.count > 1:
         raise InputError(
             f"cannot compute spectra of {system.n} masses and {system.contact_system.count} contacts: a "

@@ -136,8 +136,9 @@ def history(
         the natural frequency.  Where nothing states P, P/m_1 is 1 m/s^2.  `beta` may then be forces, or
         accelerations of friction over m_1: "0.05 g".
     start : "rest", mapping, Dataset or path
-        ``{"x": [...], "v": [...]}``: displacements and velocities of the masses; or the last state of a
-        `history`, or the state at tau = 0 of a `response`, taken relative to its base.
+        ``{"x": [...], "v": [...]}``: displacements and velocities of the masses; of a structure given by
+        modes also `q` and `q_rate`, those of the modes; or the last state of a `history`, or the state at
+        tau = 0 of a `response`, taken relative to its base.
     after : "rest" or float
         How long the motion is followed after the record, without load: until no contact can move again,
         which is proved by the energy, or a time, in seconds for records with a unit.
@@ -164,7 +165,8 @@ def history(
     -------
     xarray.Dataset
         Over (record, scale, mu, beta), after the names of `axes`, and (dof, time), (contact, time), (event):
-        see the manual.
+        see the manual.  Points of a structure given by modes take the place of masses; their names are in
+        `point_name`.
 
     Raises
     ------
@@ -348,13 +350,14 @@ def _peaks(structure: Structure, motions: Motions, one: Found) -> dict[str, np.n
             up = np.abs(high[rows]) >= np.abs(low[rows])
             found[f"{largest}_time"] = np.where(up, one.kept.times[1, rows], one.kept.times[0, rows])
     for name in ("base_force", "base_force_max", "base_force_min"):
-        found[name] = found[name][0]
+        if name in found:
+            found[name] = found[name][0]
     return found
 
 
 def _scalars(structure: Structure, motions: Motions, one: Found, asked: Asked) -> dict[str, Any]:
     """Numbers of one motion: of all, of each contact, of each mass."""
-    kept, phi = one.kept, structure.modal.phi
+    kept, shapes = one.kept, structure.shapes
     elastic = structure.spring > 0.0
     stops = kept.changes[0]
     start = asked.start
@@ -363,8 +366,10 @@ def _scalars(structure: Structure, motions: Motions, one: Found, asked: Asked) -
     before = float(motions.energy(start.q, start.p, start.f, one, 0))
     walls = float(kept.works[1] + kept.record.works[1].sum())
     rests = one.place is not None
-    return _peaks(structure, motions, one) | motions.further_scalars(one) | {
-        "residual": phi @ one.place if rests else np.full(len(phi), np.nan),
+    turn = structure.given_modes
+    modal = {} if structure.points is None else {"modal_place": turn @ q, "modal_velocity": turn @ p}
+    return _peaks(structure, motions, one) | motions.further_scalars(one) | modal | {
+        "residual": motions.places(one) if rests else np.full(len(shapes), np.nan),
         "contact_residual": motions.contact_places(one) if rests else np.full(elastic.size, np.nan),
         "stops": np.where(elastic, np.nan, stops), "slips": np.where(elastic, stops, np.nan),
         "turns": kept.changes[2],
@@ -386,7 +391,7 @@ def _traces(structure: Structure, motions: Motions, one: Found, energies: bool) 
     places = motions.watched.places
     values = motions.watched.weights @ columns
     z, f = values[places["z"]], columns[2 * m : 2 * m + contacts]
-    kt = structure.spring[:, np.newaxis]
+    kt = structure.own_springs[:, np.newaxis]
     with np.errstate(divide="ignore", invalid="ignore"):
         slider = np.where(kt > 0.0, z - f / kt, np.nan)
     if energies:
@@ -395,9 +400,11 @@ def _traces(structure: Structure, motions: Motions, one: Found, energies: bool) 
         found = energies_over_time(structure, stored, motions.problem.belt, states, still)
     else:
         found = {}
+    moving = {}
+    if not structure.softer:  # else velocities of points jump
+        moving = {"v": structure.shapes @ columns[m : 2 * m], "acceleration": values[places["acceleration"]]}
     found |= {
-        "time": states[0], "x": values[places["x"]], "v": structure.modal.phi @ columns[m : 2 * m],
-        "acceleration": values[places["acceleration"]], "z": z, "friction": f,
+        "time": states[0], "x": values[places["x"]], **moving, "z": z, "friction": f,
         "direction": one.kept.senses[: one.kept.counts[1]].T, "y": slider,
         "drive": columns[-motions.problem.push.shape[1]],
     }  # fmt: skip
@@ -501,6 +508,8 @@ def _coordinates(structure: Structure, grid: Grid) -> dict[str, xr.Variable]:
         "record": np.arange(1, len(grid.records) + 1), "scale": grid.scale, "mu": grid.mu,
         "beta": grid.beta, "dof": np.array(structure.system.dofs.numbers),
     }  # fmt: skip
+    if structure.points is not None:
+        own["point_name"] = np.array(structure.system.dofs.written_labels, dtype=np.str_)
     if general.springs:
         own |= {name: one.values for name, one in spring_coordinates(structure.system).items()}
     names = [one.name or one.quantity for one in grid.records]

@@ -39,7 +39,7 @@ def _system(system: System, drive: Drive) -> PhaseSystem:
                 "there; omit it",
             )  # fmt: skip
     given = phase_system(system, 1.0)
-    walls = drive.base[:, drive.place].sum(axis=1)
+    walls = drive.base[:, drive.of_base].sum(axis=1)
     contacts = [replace(one, moved=float(wall)) for one, wall in zip(given.contacts, walls, strict=True)]
     return replace(given, contacts=contacts, loads={}, base={}, offset=None)
 
@@ -120,7 +120,7 @@ class OpeningMotions(Motions):
         self.watched = watched_of(structure, self.problem, drive, further)
         self.rate = fastest(self.phases)
         self.free = self.modes.squares.size  # modes of the structure; the next one, if any, is the base
-        if drive.place.any():
+        if drive.of_base.any():
             self.phases = _with_base(self.phases, ground_of(structure.system.contact_system))
 
     @property
@@ -137,7 +137,7 @@ class OpeningMotions(Motions):
         push = np.pad(self.problem.push, ((0, modes - self.free), (0, 0)))
         return Memory(
             make_motion(problem, row, 0), row._replace(size=size), self.problem.belt.astype(float),
-            push, self.drive.place.astype(float), np.array([self.free]), self._ground(),
+            push, self.drive.of_base.astype(float), np.array([self.free]), self._ground(),
             np.array([self.rate]), np.ones(1), np.array([terms]), np.zeros((channels, WIDTH)),
             np.zeros((channels, WIDTH)), np.zeros(contacts, np.int64), np.zeros(contacts),
             np.zeros((8, WIDTH)),
@@ -171,7 +171,7 @@ class OpeningMotions(Motions):
         problem = self.phases
         stiffest = np.abs(problem.slopes).max(axis=1, initial=0.0)
         pressed = problem.pressed[:, np.newaxis] * problem.normal
-        size, place = self.size_of(scale), self.loads_of(scale)[self.drive.place].sum()
+        size, place = self.size_of(scale), self.loads_of(scale)[self.drive.of_base].sum()
         further = [
             np.abs(one[:, : self.free]).sum(axis=1) * size + np.abs(one[:, self._base]).sum(axis=1) * place
             for one in (pressed, stiffest[:, np.newaxis] * problem.along)
@@ -186,7 +186,9 @@ class OpeningMotions(Motions):
 
         weights : of quantities whose peaks are kept, in the place of all others
         """
-        still = not (self.problem.belt.any() or (scale and self.drive.terms[-1, self.drive.place, 1:].any()))
+        still = not (
+            self.problem.belt.any() or (scale and self.drive.terms[-1, self.drive.of_base, 1:].any())
+        )
         beds = _Beds(self.phases, cell, self.free, still)
         watched = self.watched.weights if weights is None else weights
         rounding = self._rounding(watched, cell, scale)
@@ -221,7 +223,7 @@ class OpeningMotions(Motions):
         if modes == self.free:
             return kept, found
         columns = [modes, 2 * modes]  # behind the time
-        first = scale * self.drive.terms[0, self.drive.place].sum(axis=0)
+        first = scale * self.drive.terms[0, self.drive.of_base].sum(axis=0)
         found[:, 0] = first[0], first[1] / self.drive.steps[0]
         found[:, 1] = motion.q[-1], motion.p[-1]
         found[:, 2:] = kept.states[:shown, columns].T

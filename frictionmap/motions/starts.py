@@ -15,6 +15,9 @@ from ..model.general import DISPLACEMENT
 from ..model.system import System
 from .structure import Structure
 
+#: Difference of displacements of points from those of modes, over the largest, that is rounding error.
+_BESIDE = 1e-9
+
 
 class Start(NamedTuple):
     """State at the beginning."""
@@ -48,24 +51,52 @@ def start_of(structure: Structure, given: Any) -> Start:
     return Start(np.zeros(m), np.zeros(m), np.zeros(contacts), by_law)
 
 
-def _modal(structure: Structure, x: np.ndarray) -> np.ndarray:
-    return structure.modal.phi.T @ (structure.modal.mass @ x)
+def _modal(structure: Structure, x: np.ndarray, name: str) -> np.ndarray:
+    """The modes (m,) that move the masses, or points, by x."""
+    if structure.points is None:
+        return np.asarray(structure.modal.phi.T @ (structure.modal.mass @ x))
+    found, _, rank, _ = np.linalg.lstsq(structure.shapes, x)
+    modes, off = structure.shapes.shape[1], np.abs(structure.shapes @ found - x).max()
+    if x.any() and (rank < modes or off > _BESIDE * np.abs(x).max()):
+        raise InputError(
+            name,
+            f"must determine the {modes} modes, as displacements of as many independent points, that agree "
+            f"with them; give q and q_rate, those of the modes; got {checks.one_line(x.tolist())}",
+        )
+    return np.asarray(found) if x.any() else np.zeros(modes)
 
 
-def _vector(given: Any, name: str, n: int) -> np.ndarray:
+def _vector(given: Any, name: str, n: int, each: str = "mass") -> np.ndarray:
     values = checks.array(given, name).astype(float)
     if values.shape != (n,) or not np.isfinite(values).all():
-        raise InputError(name, f"must have one finite number per mass ({n}); got {values.tolist()}")
+        raise InputError(name, f"must have one finite number per {each} ({n}); got {values.tolist()}")
     return values
 
 
+def _turned(structure: Structure, given: Any, name: str) -> np.ndarray:
+    """Modal coordinates (m,) of a structure from those of the modes that it was given by."""
+    q = _vector(given, name, structure.modal.squares.size, "mode")
+    return np.asarray(np.linalg.solve(structure.given_modes, q))
+
+
 def _from_mapping(structure: Structure, given: Mapping) -> Start:
-    n, contacts = structure.system.n, structure.spring.size
+    valid = ("x", "v") if structure.points is None else ("x", "v", "q", "q_rate")
     for key in given:
-        if key not in ("x", "v"):
-            raise InputError(f"unknown key {f'start.{key}'!r}; valid: x, v")
-    x, v = (_vector(given.get(key, np.zeros(n)), f"start.{key}", n) for key in ("x", "v"))
-    return Start(_modal(structure, x), _modal(structure, v), np.zeros(contacts), np.full(contacts, BY_LAW))
+        if key not in valid:
+            raise InputError(f"unknown key {f'start.{key}'!r}; valid: {', '.join(valid)}")
+    q, p = (_part(structure, given, *keys) for keys in (("x", "q"), ("v", "q_rate")))
+    contacts = structure.spring.size
+    return Start(q, p, np.zeros(contacts), np.full(contacts, BY_LAW))
+
+
+def _part(structure: Structure, given: Mapping, key: str, modal: str) -> np.ndarray:
+    """Modal displacements or velocities (m,) that are given as such, or of the masses or points; else 0."""
+    if key in given and modal in given:
+        raise InputError("cannot use", f"start.{modal}", f"with start.{key}: both are the same; omit one")
+    if modal in given:
+        return _turned(structure, given[modal], f"start.{modal}")
+    n, name = structure.system.n, f"start.{key}"
+    return _modal(structure, _vector(given.get(key, np.zeros(n)), name, n, structure.system.dofs.noun), name)
 
 
 def _base_at_start(system: System, r: float) -> tuple[float, float]:
@@ -78,22 +109,29 @@ def _base_at_start(system: System, r: float) -> tuple[float, float]:
 def _from_motion(structure: Structure, ds: xr.Dataset) -> Start:
     """The last state of a history, or that of a response at tau = 0, which is its last one, too."""
     axis = "time" if "time" in ds.dims else "tau"
-    needed = [axis, "x", "v", "friction", "direction"]
+    by_modes = structure.points is not None and (axis == "time" or structure.softer)
+    place, velocity = ("modal_place", "modal_velocity") if by_modes else ("x", "v")
+    needed = [axis, place, velocity, "friction", "direction"]
     missing = [name for name in needed if name not in ds.variables]
     if missing:
         raise InputError("start", f"must have {', '.join(needed)}, as a history has; got no {missing[0]}")
     last = ds.isel({axis: -1}).squeeze()
-    n, contacts = structure.system.n, structure.spring.size
-    x, v = _vector(np.atleast_1d(last["x"]), "start.x", n), _vector(np.atleast_1d(last["v"]), "start.v", n)
-    rate = 1.0
+    contacts, n = structure.spring.size, structure.system.n
+    rate, base = 1.0, (0.0, 0.0)
     if axis == "tau":  # a response has velocities over tau, and displacements in space
         rate = float(ds["r"])
-        place, velocity = _base_at_start(structure.system, rate)
-        x, v = x - place, v - velocity
+        base = (0.0, 0.0) if by_modes else _base_at_start(structure.system, rate)
+    carried = 1.0 if structure.points is None else structure.points.carried
+
+    def part(name: str, moved: float) -> np.ndarray:
+        given = np.atleast_1d(last[name])
+        if by_modes:
+            return _turned(structure, given, f"start.{name}")
+        return _modal(structure, _vector(given, f"start.{name}", n) - moved * carried, f"start.{name}")
+
+    q, p = part(place, base[0]), part(velocity, base[1])
     f, sense = np.atleast_1d(last["friction"]).astype(float), np.atleast_1d(last["direction"])
     if f.shape != (contacts,):
         raise InputError("start", f"must have {contacts} contacts, as the system has; got {f.size}")
     springs = structure.spring > 0.0
-    return Start(
-        _modal(structure, x), rate * _modal(structure, v), np.where(springs, f, 0.0), sense.astype(int)
-    )
+    return Start(q, rate * p, np.where(springs, f, 0.0), sense.astype(int))

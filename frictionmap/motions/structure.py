@@ -8,7 +8,8 @@ import numpy as np
 from .._kernels.general.problem import Problem
 from ..errors import InputError
 from ..general.problem import ModalSystem, fastest, law_of, modal_system, refuse_loop, springs, ties
-from ..model.general import ContactSystem, in_general_form, refuse_banks, refuse_modes, refuse_phases
+from ..model.general import ContactSystem, in_general_form, refuse_banks, refuse_phases
+from ..model.points import Points
 from ..model.system import System
 from .channels import Drive
 
@@ -20,6 +21,36 @@ class Structure(NamedTuple):
     modal: ModalSystem
     spring: np.ndarray  # (N,)
     rate: float  # bound on the rate of free motion
+
+    @property
+    def points(self) -> Points | None:
+        """The points of a structure given by modes."""
+        return self.system.contact_system.points
+
+    @property
+    def softer(self) -> bool:
+        """Whether modes that are left out add a residual flexibility."""
+        return self.points is not None and self.points.residual is not None
+
+    @property
+    def shapes(self) -> np.ndarray:
+        """Displacements of the masses, or points, by the modes, (n, m) or (p, m)."""
+        return self.modal.phi if self.modal.points is None else self.modal.points.shapes
+
+    @property
+    def own_springs(self) -> np.ndarray:
+        """Stiffness of the springs in the contacts alone, 0 where one is rigid, (N,)."""
+        return np.array([group.stiffness or 0.0 for group in self.system.contact_system.groups])
+
+    @property
+    def given_modes(self) -> np.ndarray:
+        """Displacements of the modes that a structure is given by, x = Phi q over P/k_1, by these, (m, m)."""
+        return self.modal.phi * (np.sqrt(self.system.stiffness_scale) / self.system.omega_1)
+
+    def beside_modes(self, forces: np.ndarray) -> np.ndarray:
+        """What forces in the contacts (N, ...) displace beside the modes: the points, (p, ...)."""
+        assert self.modal.points is not None
+        return np.asarray(self.modal.points.forces @ forces)
 
 
 class Watched(NamedTuple):
@@ -37,11 +68,17 @@ def structure_of(system: System, opens: bool = False) -> Structure:
             "motions of contacts that open and of piecewise linear springs may move apart, so that no bound "
             "holds at all times; follow both motions by history and compare them",
         )  # fmt: skip
-    refuse_modes(system, "compute motions under records")
     refuse_banks(system, "compute motions under records")
     system = in_general_form(system)
     general = system.contact_system
     refuse_loop(general)
+    if general.flexibility.size:
+        raise InputError(
+            "cannot use",
+            "residual",
+            "in motions in time with several contacts that it couples, whose forces would jump together with "
+            "the load; use with_residual = false of a beam or plate, or omit residual",
+        )
     if any(group.first.nu for group in general.groups):
         raise InputError(
             "cannot use",
@@ -98,7 +135,7 @@ def watched_of(
     further : vectors (..., m) of further forces by name, which are watched
     """
     modal, others = structure.modal, further or {}
-    n, m = modal.phi.shape
+    m = modal.squares.size
     contacts, channels = structure.spring.size, drive.push.shape[1]
     vectors = np.concatenate([modal.chi, *others.values()])
     size = 2 * m + len(vectors) + channels
@@ -108,15 +145,19 @@ def watched_of(
     inertia = (
         -problem.squares[:, np.newaxis] * q - problem.damping @ p + problem.push @ load - vectors.T @ forces
     )
-    restoring = modal.stiffness @ modal.phi @ q + modal.viscous @ modal.phi @ p
     rows = {
-        "x": modal.phi @ q,
+        "x": structure.shapes @ q,
         "z": problem.chi @ q - problem.base @ load,
-        "acceleration": modal.phi @ inertia + np.outer(np.ones(n), drive.acceleration @ load),
+        "acceleration": structure.shapes @ inertia + _carried(structure, drive.acceleration @ load),
         "friction": f,
-        "base_force": -restoring.sum(axis=0, keepdims=True),
+        "base_force": _base_force(structure, q, p),
         "spring_force": _spring_forces(structure) @ q,
     }
+    if structure.points is not None and structure.softer:
+        beside = drive.place @ load + structure.beside_modes(f)
+        rows["x"] = rows["x"] + beside
+        rows["z"] = rows["z"] + structure.points.vectors @ structure.beside_modes(f)
+        rows["acceleration"] = np.empty((0, size))  # there velocities jump
     begin = contacts
     for name, one in others.items():
         rows[name] = forces[begin : begin + len(one)]
@@ -128,9 +169,24 @@ def watched_of(
     return Watched(np.ascontiguousarray(np.vstack(list(rows.values()))), places)
 
 
+def _carried(structure: Structure, acceleration: np.ndarray) -> np.ndarray:
+    """Accelerations of the masses, or points, with the base, as sums of the units (U,): (n, U)."""
+    carried = np.ones(structure.system.n) if structure.points is None else structure.points.carried
+    return np.outer(carried, acceleration)
+
+
+def _base_force(structure: Structure, q: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """Force of the base on springs and dampers, as sums of the units, (1, U); (0, U) of points: not known."""
+    modal = structure.modal
+    if structure.points is not None:
+        return np.empty((0, q.shape[1]))
+    restoring = modal.stiffness @ modal.phi @ q + modal.viscous @ modal.phi @ p
+    return np.asarray(-restoring.sum(axis=0, keepdims=True))
+
+
 def _spring_forces(structure: Structure) -> np.ndarray:
     """Forces in the springs of a chain by the modes, (n, m); none of matrices."""
-    system, phi = structure.system, structure.modal.phi
+    system, phi = structure.system, structure.shapes
     if system.stiffness_ratios is None:
         return np.empty((0, phi.shape[1]))
     stretch = np.diff(phi, axis=0, prepend=0.0)

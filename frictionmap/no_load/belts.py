@@ -33,7 +33,14 @@ class Belts(NamedTuple):
 def is_one_mass(system: System) -> bool:
     """Whether a system is one mass with the mass and the stiffness 1, which is solved in closed form."""
     modes = system.modes
-    return system.n == 1 and modes.mass[0, 0] == 1.0 and modes.stiffness[0, 0] == 1.0
+    one = system.n == 1 and not system.by_modes
+    return one and modes.mass[0, 0] == 1.0 and modes.stiffness[0, 0] == 1.0
+
+
+def shapes_of(system: System) -> np.ndarray:
+    """Displacements of the masses, or points, by the coordinates of a structure, (n, m)."""
+    points = system.contact_system.points
+    return np.eye(len(system.modes.mass)) if points is None else points.shapes
 
 
 def is_phases(system: System) -> bool:
@@ -75,11 +82,6 @@ def _refuse_loads(system: System) -> None:
         raise InputError("cannot use", "excitation", "= 'base' without a load: the base is at rest; omit it")
     if system.load_mass != system.dofs.numbers[0]:
         raise InputError("cannot use", "load_mass", "without a load: belt speeds take its place; omit it")
-    if system.contact_system.points is not None:
-        raise InputError(
-            "cannot compute motions without a load of a structure given by modes, a beam or a plate: this is "
-            "not offered; give matrices"
-        )
     if system.rigid_modes:
         raise InputError(
             "cannot compute motions without a load of a free structure: no spring holds it at a place; add a "

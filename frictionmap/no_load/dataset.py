@@ -36,6 +36,8 @@ def belt_dataset(
     own = dict(values)
     if "x_max" in values:
         own["dof"] = np.array(system.dofs.numbers)
+    if "x_max" in values and system.by_modes:
+        own["point_name"] = np.array(system.dofs.written_labels)
     if any(name.startswith("spring_") for name in values):
         own |= {name: one.values for name, one in spring_coordinates(system).items()}
     groups = system.contact_system.groups

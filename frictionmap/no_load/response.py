@@ -110,7 +110,7 @@ def _samples(ride: Ride, friction: Friction, motion: Motion, points: int) -> dic
         for j in range(contacts):
             forces[j, k] = memory.motion.series[_force_row(problem) + j, 0]
         senses[:, k] = memory.motion.sense
-    x, v = ride.modal.phi @ states[:, 0].T, ride.modal.phi @ states[:, 1].T / ride.h
+    x, v = ride.shapes @ states[:, 0].T, ride.shapes @ states[:, 1].T / ride.h
     z = ride.modal.chi @ states[:, 0].T
     of_contacts: dict[str, np.ndarray] = {"z": z, "friction": forces, "direction": senses}
     if contacts == 1:

@@ -32,7 +32,7 @@ class Sliding:
         self.speeds = belts.share * speed
         self.moves = belts.share != 0.0
         self.holds = ~self.moves & (static > 0.0)
-        self._free = null_space(self._vectors[self.holds]) if self.holds.any() else np.eye(system.n)
+        self._free = null_space(self._vectors[self.holds]) if self.holds.any() else np.eye(len(self._mass))
         factor = np.array([float(law(abs(v))) for law, v in zip(self._laws, self.speeds, strict=True)])
         self.pull = self._vectors.T @ (np.sign(self.speeds) * kinetic * factor * self.moves)
         self.place = np.linalg.solve(self._stiffness, self.pull)

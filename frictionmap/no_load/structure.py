@@ -29,7 +29,7 @@ from .._kernels.no_load.ride import (
 from ..general.problem import ModalSystem, problem_of
 from ..model.general import in_general_form
 from ..model.system import System
-from .belts import Belts
+from .belts import Belts, shapes_of
 from .steady import Sliding
 
 #: Distance of states at two maxima, over the velocity of the motion, from which Newton's method is tried, and
@@ -93,8 +93,11 @@ class Ride:
         self.problem, self.modal = _problem(system, belts, speed, friction)
         self.belts, self.speed = belts, speed
         self.contact = int(np.flatnonzero(belts.share)[0])
-        self._march = make_memory(self.problem, self.modal.phi)
-        self.flight = make_memory(self.problem, self.modal.phi)
+        modal = self.modal
+        self.shapes = np.ascontiguousarray(modal.phi if modal.points is None else modal.points.shapes)
+        self._seen = shapes_of(system)  # the same by the coordinates of the structure
+        self._march = make_memory(self.problem, self.shapes)
+        self.flight = make_memory(self.problem, self.shapes)
         self.h = float(self._march.row.numbers[0])
         self.longest = _LONGEST * 2.0 * np.pi / np.sqrt(self.modal.squares.min()) / self.h
 
@@ -103,7 +106,7 @@ class Ride:
         moved = self.modal.phi.T @ self.modal.mass
         begin = np.array([moved @ x, moved @ velocity])
         if not start(self.problem, friction, self._march, begin):
-            return _unresolved(self.problem, regimes.TOO_MANY_EVENTS)
+            return _unresolved(self.problem, len(self.shapes), regimes.TOO_MANY_EVENTS)
         near, quiet = _NEAR, 0
         while True:
             code, back = march(
@@ -122,12 +125,12 @@ class Ride:
                 if quiet > _MOST_QUIET and sliding.followed == 0.0:
                     return self._sliding(sliding)._replace(status=regimes.MARGINAL)
                 if quiet > _MOST_QUIET:
-                    return _unresolved(self.problem, regimes.NOT_REACHED)
+                    return _unresolved(self.problem, len(self.shapes), regimes.NOT_REACHED)
             elif code == LONG:
                 found = self._averages(friction)
                 return found._replace(status=regimes.MARGINAL) if sliding.followed == 0.0 else found
             else:
-                return _unresolved(self.problem, regimes.TOO_MANY_EVENTS)
+                return _unresolved(self.problem, len(self.shapes), regimes.TOO_MANY_EVENTS)
 
     def _present(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Displacements and velocities of the masses, senses and segments, of the motion marched."""
@@ -272,19 +275,20 @@ class Ride:
         still = np.zeros(self.problem.spring.size)
         x, _, senses, _ = self._present()
         place = sliding.place_of(x)
+        seen = self._seen @ place
         stuck = (senses == 0).astype(float)
         z = self.modal.chi @ (self.modal.phi.T @ self.modal.mass @ place)
         state = np.array([self.modal.phi.T @ self.modal.mass @ place, np.zeros(self.modal.squares.size)])
         return Motion(
-            regimes.STEADY_SLIDING, regimes.RESOLVED, np.nan, still, still, stuck, still, place, place, z, z,
+            regimes.STEADY_SLIDING, regimes.RESOLVED, np.nan, still, still, stuck, still, seen, seen, z, z,
             np.nan, state, senses.copy(),
         )  # fmt: skip
 
 
-def _unresolved(problem: Problem, status: int) -> Motion:
+def _unresolved(problem: Problem, masses: int, status: int) -> Motion:
     contacts, modes = problem.chi.shape
     unknown = np.full(contacts, np.nan)
-    places = np.full(modes, np.nan)
+    places = np.full(masses, np.nan)
     return Motion(
         regimes.UNRESOLVED, status, np.nan, unknown, unknown, unknown, unknown, places, places, unknown,
         unknown, np.nan, np.zeros((2, modes)), np.zeros(contacts, np.int64),

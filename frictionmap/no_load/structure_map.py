@@ -8,7 +8,7 @@ from .. import checks, regimes
 from .._kernels.general.series import Friction
 from ..jobs import Job, Progress, Watch, run_counted
 from ..model.system import System
-from .belts import Belts
+from .belts import Belts, shapes_of
 from .steady import Sliding
 from .structure import Motion, Ride
 
@@ -39,10 +39,11 @@ def starts(sliding: Sliding, system: System, belts: Belts) -> dict[str, tuple[np
     moves = belts.share != 0.0
     release = np.linalg.lstsq(vectors, sliding.speeds * moves)[0]
     pull = vectors.T @ (np.sign(sliding.speeds) * sliding.static * moves)
-    modes = system.modes
-    shape = (modes.phi / np.abs(modes.phi).max(axis=0)).sum(axis=1)
-    size = float(np.abs(sliding.place).max() + np.abs(sliding.speeds).max() / modes.w[0])
-    still = np.zeros(system.n)
+    modes, seen = system.modes, shapes_of(system)
+    largest = np.abs(seen @ modes.phi).max(axis=0)
+    shape = (modes.phi / np.where(largest > 0.0, largest, np.inf)).sum(axis=1)
+    size = float(np.abs(seen @ sliding.place).max() + np.abs(sliding.speeds).max() / modes.w[0])
+    still = np.zeros(len(modes.mass))
     found = {"release": (np.linalg.solve(modes.stiffness, pull), release)}
     if sliding.followed >= 0.0:
         found["small"] = (sliding.place + _SMALL * size * shape, still)

@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike
 from .. import checks
 from ..errors import InputError
 from ..jobs import Progress, Watch
-from ..model.general import refuse_modes
 from ..model.system import System
 from ..units.axes import ratios, require
 from ..units.scales import Scales, Units, scales_of
@@ -49,7 +48,6 @@ def checked(
     InputError
         An axis is invalid, or motions without a load are not offered for the system.
     """
-    refuse_modes(system, "compute motions without a load")
     belts = belts_of(system)
     if is_phases(system):
         given_of(system, belts)

@@ -221,6 +221,42 @@ def shapes(ends: Ends, b: np.ndarray, x: np.ndarray, tips: Tips = BARE) -> np.nd
     return found
 
 
+def participation(ends: Ends, b: np.ndarray, tips: Tips = BARE) -> np.ndarray:
+    """Loads on the modes with roots b by a unit acceleration of both ends, (modes,).
+
+    They are the integrals of the modes, and the masses at the ends times their displacements.
+    """
+    found = np.empty(b.size)
+    for k, root in enumerate(b.tolist()):
+        cosine, sine, left, right = _mode(ends, root, tips)
+        decaying = -math.expm1(-root) * (left + right)
+        found[k] = (cosine * math.sin(root) + sine * (1.0 - math.cos(root)) + decaying) / root
+    if tips != BARE:
+        found += np.array(tips.masses) @ shapes(ends, b, np.array([0.0, 1.0]), tips)
+    return found
+
+
+def rigid_participation(ends: Ends) -> np.ndarray:
+    """The same of the rigid-body modes, (0 to 2,)."""
+    return np.asarray(rigid_lines(ends) @ [1.0, 0.5])
+
+
+def sag(ends: Ends, x: np.ndarray, tips: Tips = BARE) -> np.ndarray:
+    """Displacements at places x by a unit acceleration of both ends, as of `compliance`, (points,).
+
+    The compliance is a polynomial of the fifth degree at most on either side of a place.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    found = np.zeros(x.size)
+    for k, place in enumerate(x.tolist()):
+        for low, length in ((0.0, place), (place, 1.0 - place)):
+            within = low + 0.5 * length * (1.0 + nodes)
+            found[k] += 0.5 * length * float(weights @ _deflection(ends, place, within, tips))
+        if tips != BARE:
+            found[k] += float(np.array(tips.masses) @ _deflection(ends, place, np.array([0.0, 1.0]), tips))
+    return found
+
+
 def compliance(ends: Ends, x: np.ndarray, tips: Tips = BARE) -> np.ndarray:
     """Displacements at places x by unit forces at places x, (points, points).
 

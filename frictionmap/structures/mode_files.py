@@ -13,7 +13,7 @@ from .. import checks
 from ..errors import InputError
 from ..mat_files import read_mat
 from ..packages import package, read_by
-from .modes import Modes
+from .modes import OF_BASE, Modes
 
 #: What arrays of NPZ and MAT files, and columns of CSV files, may be called.
 _NAMES = {
@@ -24,6 +24,7 @@ _NAMES = {
     "points": ("points",),
     "residual": ("residual",),
     "compliance": ("compliance",),
+    **{name: (name,) for name in OF_BASE},
     "modal_mass": ("modal_mass", "modal_masses"),
     "normalised": ("normalised",),
 }
@@ -38,6 +39,10 @@ _COMPONENTS = ("r1", "r2", "r3", "r4", "r5", "r6")
 _UNKNOWN_MASSES = (0.0, 1.0)
 
 
+#: Nothing is known of a base that moves.
+_NO_BASE: Mapping[str, Any] = {}
+
+
 class FileModes(NamedTuple):
     """Modes as a file has them."""
 
@@ -49,6 +54,7 @@ class FileModes(NamedTuple):
     normalised: bool = False  # whether the file states unit modal masses
     residual: Any = None
     compliance: Any = None
+    of_base: Mapping[str, Any] = _NO_BASE  # by the names of `OF_BASE`; of unit modal masses
 
 
 def read_modes(path: Path, keep: Sequence[str] | None = None, normalised: bool = False) -> Modes:
@@ -84,9 +90,23 @@ def read_modes(path: Path, keep: Sequence[str] | None = None, normalised: bool =
         for one in (found.residual, found.compliance)
     )
     names = [points[row] for row in rows]
+    of_base = {name: _numbers_in(found, name, order, rows, path) for name in found.of_base}
     return Modes(
-        found.w[order], zeta, shapes[rows][:, order], names, residual, compliance, f"file {path.name}"
-    )
+        found.w[order], zeta, shapes[rows][:, order], names, residual, compliance, f"file {path.name}",
+        **of_base,
+    )  # fmt: skip
+
+
+def _numbers_in(found: FileModes, name: str, order: np.ndarray, rows: list[int], path: Path) -> np.ndarray:
+    """What a file says of a base that moves: of its modes, or of the points that are kept."""
+    values, of_modes = np.ravel(found.of_base[name]), name == OF_BASE[0]
+    count = order.size if of_modes else len(found.shapes)
+    if values.size != count:
+        each = "mode" if of_modes else "point"
+        raise InputError(
+            "modes", f": {name} in {path.name} must be a number per {each} ({count}); got {values.size}"
+        )
+    return np.asarray(values[order if of_modes else rows])
 
 
 def _rows(points: list[str], shapes: np.ndarray, keep: Sequence[str] | None, path: Path) -> list[int]:
@@ -156,6 +176,7 @@ def _named(arrays: Mapping[str, Any], path: Path) -> FileModes:
         stated == "mass" or (rates and masses is None),  # `Modes` itself has unit modal masses
         found.get("residual"),
         found.get("compliance"),
+        {name: found[name] for name in OF_BASE if name in found},
     )
 
 
@@ -177,14 +198,14 @@ def _read_mat(path: Path) -> FileModes:
 
 
 def _read_csv(path: Path) -> FileModes:
-    """A row per mode: frequency_Hz, optionally damping_ratio and modal_mass, and a column per point."""
+    """A row per mode: frequency_Hz, optionally damping_ratio, modal_mass, participation; a column per point."""
     with open(path, encoding="utf-8-sig", newline="") as file:
         try:
             rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
         except (csv.Error, UnicodeDecodeError) as error:
             raise InputError("modes", f": cannot read {path}: {error}; save it as CSV in UTF-8") from None
     header = [cell.strip() for cell in rows[0]] if rows else []
-    own = ("frequency_Hz", "damping_ratio", "modal_mass")
+    own = ("frequency_Hz", "damping_ratio", "modal_mass", OF_BASE[0])
     points = [name for name in header if name not in own]
     if "frequency_Hz" not in header or len(set(header)) < len(header) or not points or len(rows) < 2:
         raise InputError(
@@ -205,6 +226,7 @@ def _read_csv(path: Path) -> FileModes:
     return FileModes(
         2.0 * np.pi * columns["frequency_Hz"], columns.get("damping_ratio"),
         np.array([columns[name] for name in points]), points, columns.get("modal_mass"),
+        of_base={name: columns[name] for name in OF_BASE[:1] if name in columns},
     )  # fmt: skip
 
 

@@ -21,6 +21,10 @@ MOST_IMAGINARY = 0.1
 _ASYMMETRY = 1e-6
 
 
+#: What is given of a base that moves.
+OF_BASE = ("participation", "influence", "base_residual")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Modes:
     """Modes of a linear structure at some of its points: those with contacts, loads and outputs.
@@ -40,6 +44,15 @@ class Modes:
         Residual flexibility: displacements of the points by unit forces, less those of these modes.
     compliance : array, shape (points, points), optional
         Instead: the static displacements by unit forces, those of these modes included.
+    participation : array, shape (modes,), optional
+        phi.M iota: loads on the modes by a base that moves the whole structure with unit acceleration, with
+        which motions under records of the base are followed; unit sqrt(mass), as a participation factor of a
+        finite-element program for shapes of unit modal mass.
+    influence : array, shape (points,), optional
+        iota at the points: their displacements by a unit displacement of the base as of a rigid body.
+        Default: 1, points that are measured along the motion of the base.
+    base_residual : array, shape (points,), optional
+        Beside a residual: displacements of the points by the load M iota, less those of these modes.
 
     Raises
     ------
@@ -64,6 +77,9 @@ class Modes:
     imaginary: float = 0.0  # largest part of a complex shape that was left out
     optional: bool = False  # whether the residual may be left out where contacts are rigid
     geometry: Any = None  # the beam or plate that has them, for pictures
+    participation: Any = None
+    influence: Any = None
+    base_residual: Any = None
 
     def __post_init__(self) -> None:
         w = checks.array(self.w, "modes: w")
@@ -82,6 +98,8 @@ class Modes:
         object.__setattr__(self, "points", self._names(len(self.shapes)))
         self._put("residual", self._flexibility())
         object.__setattr__(self, "compliance", None)
+        for name in OF_BASE:
+            self._put(name, self._numbers(name))
 
     def _put(self, name: str, value: np.ndarray | None) -> None:
         if value is not None:
@@ -117,6 +135,12 @@ class Modes:
             )
         if not np.isfinite(given).all():
             raise InputError("modes", f": shapes must be finite; got {given[~np.isfinite(given)][0]}")
+        if given.dtype.kind == "c" and self.participation is not None:
+            raise InputError(
+                "cannot use",
+                "participation",
+                "with complex shapes, whose signs change where they are made real; give real shapes",
+            )
         shapes = self._real(given) if given.dtype.kind == "c" else given.astype(float)
         if not shapes.any(axis=1).all():
             name = self._names(len(shapes))[int(np.flatnonzero(~shapes.any(axis=1))[0])]
@@ -151,6 +175,24 @@ class Modes:
                 "modes", f": points must be {count} different names, one per row of shapes; got {list(found)}"
             )
         return found
+
+    def _numbers(self, name: str) -> np.ndarray | None:
+        """Numbers of the modes, or of the points, for a base that moves; None if they are not given."""
+        given = getattr(self, name)
+        if given is None:
+            return None
+        if self.participation is None:
+            raise InputError(
+                "cannot use", name, "without participation: both are of a base that moves; omit it"
+            )
+        size, each = (self.w.size, "mode") if name == OF_BASE[0] else (len(self.points), "point")
+        values = checks.array(given, f"modes: {name}")
+        if values.dtype.kind not in "iuf" or values.shape != (size,) or not np.isfinite(values).all():
+            raise InputError(
+                "modes",
+                f": {name} must be one finite number per {each} ({size}); got {checks.one_line(given)}",
+            )
+        return values.astype(float)
 
     def _flexibility(self) -> np.ndarray | None:
         """The residual flexibility (points, points), or None."""
@@ -194,7 +236,7 @@ class Modes:
         return Dofs(tuple(range(1, len(self.points) + 1)), self.points, POINT)
 
     def _content(self) -> tuple[Any, ...]:
-        arrays = (self.w, self.zeta, self.shapes, self.residual)
+        arrays = (self.w, self.zeta, self.shapes, self.residual, *(getattr(self, name) for name in OF_BASE))
         return (self.points, *(None if one is None else (one + 0.0).tobytes() for one in arrays))
 
     def __eq__(self, other: object) -> bool:

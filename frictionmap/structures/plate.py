@@ -79,6 +79,19 @@ class PlateModes:
         parts = self.shapes(points, self.w.size)[:, first:] / self.w[first:]
         return np.asarray(parts @ parts.T)
 
+    @property
+    def participation(self) -> np.ndarray:
+        """Integrals of all modes over the plate: their loads by a unit acceleration of the edges, (n^2,)."""
+        s, weights = np.polynomial.legendre.leggauss(self.functions + _NODES_MORE)
+        along = weights @ _values(self.edges.left, self.edges.right, self.functions, s)[0]
+        across = weights @ _values(self.edges.front, self.edges.back, self.functions, s)[0]
+        return np.asarray(0.5 * math.sqrt(self.aspect) * np.outer(along, across).ravel() @ self.vectors)
+
+    def sag(self, points: np.ndarray, first: int) -> np.ndarray:
+        """Displacements at points by that acceleration, (points,), without the first modes."""
+        share = self.participation[first:] / self.w[first:] ** 2
+        return np.asarray(self.shapes(points, self.w.size)[:, first:] @ share)
+
 
 def _values(first: str, last: str, count: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Functions with edges at s = -1 and 1 (points, count), and their first and second derivatives by s."""

@@ -234,6 +234,24 @@ class Beam:
         rest = beam.compliance(self.kinds, self._x, self.tips) - unit @ unit.T
         return np.asarray(0.5 * (rest + rest.T) * (self.length**3 / self.bending_stiffness))
 
+    @property
+    def participation(self) -> np.ndarray | None:
+        """Loads on the modes by a unit acceleration of the supports, (modes,); None of a beam without any."""
+        held = any(0 in beam.ENDS[kind] for kind in self.kinds) or any(self.end_springs)
+        if not held:
+            return None
+        rigid = beam.rigid_participation(self.kinds) if self.tips == beam.BARE else np.empty(0)
+        elastic = beam.participation(self.kinds, self._roots, self.tips)
+        return np.concatenate((rigid, elastic)) * math.sqrt(self.mass)
+
+    @property
+    def base_residual(self) -> np.ndarray:
+        """Displacements of the points by that acceleration, less those of these modes, (points,)."""
+        unit = beam.shapes(self.kinds, self._roots, self._x, self.tips) / self._roots**4
+        rest = beam.sag(self.kinds, self._x, self.tips)
+        rest -= unit @ beam.participation(self.kinds, self._roots, self.tips)
+        return np.asarray(rest * (self.mass * self.length**3 / self.bending_stiffness))
+
     def describe(self) -> str:
         """Describe the beam in a few words."""
         more = "" if self.tips == beam.BARE else " with springs or masses at its ends"
@@ -441,6 +459,20 @@ class Plate:
             rest = self.solution.compliance(self._place, self.modes)
         return np.asarray(0.5 * (rest + rest.T) * (self.size[0] ** 2 / self.bending_stiffness))
 
+    @property
+    def participation(self) -> np.ndarray | None:
+        """Loads on the modes by a unit acceleration of the supports, (modes,); None of a free plate."""
+        if set(self.kinds) == {"free"}:
+            return None
+        found = self.solution.participation[: self._kept.stop]
+        return np.asarray(found * (self.size[0] * math.sqrt(self.mass_per_area)))
+
+    @property
+    def base_residual(self) -> np.ndarray:
+        """Displacements of the points by that acceleration, less those of these modes, (points,)."""
+        rest = self.solution.sag(self._place, self._kept.stop)
+        return np.asarray(rest * (self.size[0] ** 4 * self.mass_per_area / self.bending_stiffness))
+
     def describe(self) -> str:
         """Describe the plate in a few words."""
         letters = "".join(kind[0].upper() for kind in self.kinds)
@@ -457,14 +489,17 @@ def _solve(edges: plate.Edges, aspect: float, nu: float, functions: int) -> plat
 
 
 def _as_modes(owner: Beam | Plate) -> Modes:
-    rigid = owner.rigid_shapes
+    rigid, participation = owner.rigid_shapes, owner.participation
+    softer = owner.with_residual is not False
     return Modes(
         np.concatenate((np.zeros(rigid.shape[1]), owner.frequencies)),
         None,
         np.hstack((rigid, owner.shapes)),
         tuple(owner.points),
-        None if owner.with_residual is False else owner.residual,
+        owner.residual if softer else None,
         source=owner.describe(),
         optional=owner.with_residual is None,
         geometry=owner,
+        participation=participation,
+        base_residual=None if participation is None or not softer else owner.base_residual,
     )

@@ -63,11 +63,6 @@ def test_other_systems_are_refused():
     free = fm.System(mass_ratios=[1, 1], stiffness_ratios=[0, 1])
     with pytest.raises(fm.InputError, match="of a free structure"):
         fm.sweep(free, wall_speed=[0.1], beta=[1.0])
-    modes = fm.Modes([1.0, 3.0], 0.02, [[1.0, -0.5]], ["tip"])
-    with pytest.raises(fm.InputError, match="given by modes"):
-        fm.sweep(
-            fm.System(modes=modes, contact_masses=["tip"], load_mass="tip"), wall_speed=[0.1], beta=[1.0]
-        )
     with pytest.raises(fm.InputError, match="excitation"):
         fm.sweep(fm.System(excitation="base"), wall_speed=[0.1], beta=[1.0])
 

@@ -270,3 +270,29 @@ def test_random_laws_by_both_engines():
             assert all(int(cell.also_reachable) >> end.regime & 1 for end in ends.values())
             seen |= {end.regime for end in ends.values()}
     assert seen == {4, 5, 6}
+
+
+def test_structures_by_their_modes_are_the_same():
+    contacts = [fm.Contact(masses=[2], law=LAW), fm.Contact("between-masses", [1, 2], ratio=0.3)]
+    ratios = (0.02, 0.03)
+    chain = {"mass_ratios": [1.0, 0.7], "stiffness_ratios": [1.0, 1.4], "damping_ratios": ratios}
+    for own in (contacts[:1], contacts):
+        whole = fm.System(**chain, contacts=own)
+        modes = fm.Modes(whole.modes.w, ratios, whole.modes.phi, ["low", "top"])
+        modal = fm.System(modes=modes, contacts=own, frequency_scale=1.0)
+        grid = {"wall_speed": [0.05, 0.2, 1.5], "beta": [0.1, 0.6], "mu": [1.0, 1.3]}
+        expected, found = (fm.sweep(one, **grid) for one in (whole, modal))
+        assert len(set(expected.regime.values.ravel())) > 1
+        for name in expected.data_vars:
+            np.testing.assert_allclose(found[name], expected[name], rtol=1e-9, atol=1e-10, err_msg=name)
+        assert found.point_name.values.tolist() == ["low", "top"]
+    top = fm.System(
+        modes=fm.Modes(whole.modes.w, ratios, whole.modes.phi[1:], ["top"]),
+        contact_masses=["top"], contacts=None, frequency_scale=1.0,
+    )  # fmt: skip
+    one = fm.System(**chain, contact_masses=[2])
+    at = {"wall_speed": 0.2, "beta": 0.5, "mu": 1.4}
+    expected, found = (fm.response(system, **at) for system in (one, top))
+    for name in ("x", "v"):
+        np.testing.assert_allclose(found[name][0], expected[name][1], rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(found.friction, expected.friction, rtol=0.0, atol=1e-9)

@@ -359,7 +359,6 @@ def test_refusals(make, message):
 
 
 @pytest.mark.parametrize("ask", [
-    lambda system: fm.history(system, fm.Record([0.0, 1.0, 0.0], dt=0.1, quantity="force"), beta=[0.1]),
     lambda system: fm.continuous_motion(system, r=0.5, beta=0.1),
     lambda system: fm.sweep(system, r=[0.5], beta=[0.1], solver=fm.Solver(outputs=("drift",))),
     lambda system: fm.sweep(system, r=[0.5], beta=[0.1], solver=fm.Solver(outputs=("base_force",))),
@@ -387,6 +386,23 @@ def test_complex_shapes_are_turned():
     np.testing.assert_allclose(found.shapes, shapes * signs, atol=1e-15)
     small = fm.Modes([1.0, 2.0], 0.0, shapes * (1.0 + np.array([[0.02j, 0.0], [-0.02j, 0.0]])), ["a", "b"])
     assert 0.0 < small.imaginary < 0.1
+
+
+def test_files_with_a_participation(tmp_path):
+    path = tmp_path / "rig.csv"
+    head = "frequency_Hz,damping_ratio,participation,modal_mass,tip"
+    path.write_text(f"{head}\n9,0.01,0.4,4,2\n5,0.02,-1.5,1,3\n")
+    found = fm.System(modes=path, contact_masses=["tip"]).matrices
+    assert found.participation.tolist() == [-1.5, 0.4]
+    assert found.shapes.tolist() == [[3.0, 1.0]]
+    arrays = {"w": [1.0, 2.0], "shapes": [[1.0, 0.5], [0.2, 0.3]], "points": ["a", "b"]}
+    more = {"participation": [0.3, 0.1], "influence": [1.0, 0.0], "base_residual": [0.01, 0.0]}
+    np.savez(tmp_path / "rig.npz", **arrays, **more)
+    one = fm.System(modes={"file": tmp_path / "rig.npz", "points": ["b"]}, contact_masses=["b"]).matrices
+    assert (one.influence.tolist(), one.base_residual.tolist()) == ([0.0], [0.0])
+    np.savez(tmp_path / "short.npz", **arrays, participation=[0.3])
+    with pytest.raises(InputError, match="must be a number per mode"):
+        fm.System(modes=tmp_path / "short.npz", contact_masses=["b"])
 
 
 def test_compliance_in_the_place_of_the_residual():

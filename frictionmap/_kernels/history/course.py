@@ -39,6 +39,7 @@ class Course(NamedTuple):
     times: np.ndarray  # (K,) when they begin
     jumps: np.ndarray  # (K,) bool: whether a channel jumps where the interval begins
     ties: np.ndarray  # (N, N) bool: `Problem.ties` of springs under varying normal loads
+    direct: np.ndarray  # (N, D) displacement of walls by channels whose places or rates may jump
 
 
 @kernel

@@ -50,11 +50,23 @@ from .course import (
 )
 from .held import Places, keep_places, make_places, note_places
 from .kept import begin_step, keep_ends, keep_present, keep_step, list_changes, store_state
-from .springs import begin_springs, follow_open, has_varying_spring, rest_tied, turn_open
+from .springs import (
+    begin_springs,
+    bends,
+    follow_open,
+    follow_walls,
+    has_varying_spring,
+    rest_tied,
+    slip_with_walls,
+    turn_open,
+)
 from .tables import Tables, has_tables, make_tables, pass_by_tables, set_tables
 
 #: Leading terms of a slide's velocity that may be zero at most: where the load begins as t^4.
 _MOST_ZEROS = 6
+
+#: A jump of a wall within this share of its terms is rounding error.
+_SAME = 1e-12
 
 #: A velocity at the start within this share of its terms is rest.
 _AT_REST = 1e-12
@@ -273,10 +285,38 @@ def _sense_at_start(problem, row, motion, j):
 
 
 @kernel
-def begin(memory, problem, friction, course, start, senses):
+def _note_leaps(course, k, leaps):
+    """Fill how far the walls of springs jump where interval k begins, but for rounding error."""
+    for j in range(leaps.size):
+        leaps[j], size = 0.0, 0.0
+        for d in range(course.direct.shape[1]):
+            now, before = course.pieces[k, d, 0], 0.0
+            for i in range(course.pieces.shape[2] if k > 0 else 0):
+                before += course.pieces[k - 1, d, i]
+            leaps[j] += course.direct[j, d] * (now - before)
+            size += abs(course.direct[j, d]) * (abs(now) + abs(before))
+        if abs(leaps[j]) <= _SAME * size:
+            leaps[j] = 0.0
+
+
+@kernel
+def _begin_at_walls(problem, friction, memory, course, kept):
+    """Let springs follow what the load displaces at once where the record begins."""
+    row, motion, leaps = memory.row, memory.motion, memory.box[0]
+    before = motion.scratch[_SENSE]
+    for j in range(motion.sense.size):
+        before[j] = motion.sense[j]
+    _note_leaps(course, 0, leaps)
+    follow_walls(problem, row, friction, motion, leaps, kept)
+    list_changes(row, motion, before, 0.0, kept)
+    slip_with_walls(problem, row, friction, leaps, kept)
+
+
+@kernel
+def begin(memory, problem, friction, course, start, senses, kept):
     """Set the state and the pattern at the start; False if the contacts do not determine their forces.
 
-    memory, problem, friction, course, start, senses : see `motions_in_time.follow_record`
+    memory, problem, friction, course, start, senses, kept : see `motions_in_time.follow_record`
     """
     row, motion = memory.row, memory.motion
     row.intervals[HALF], row.intervals[LOAD_TERMS] = 1, course.pieces.shape[2]
@@ -302,6 +342,8 @@ def begin(memory, problem, friction, course, start, senses):
     before = motion.scratch[_SENSE]
     before[:] = 1.0
     note_places(problem, row, motion, before, 0.0, course.times[0], memory.places)
+    if senses[0] == BY_LAW and bends(course.direct):
+        _begin_at_walls(problem, friction, memory, course, kept)
     return True
 
 
@@ -330,15 +372,19 @@ def follow_part(memory, problem, friction, course, kept, part, jump, listed):
     ----------
     memory, problem, friction, course, kept : see `motions_in_time.follow_record`
     part : number of the part; its polynomials are in `memory.channels`
-    jump : whether the load jumps where the interval begins
+    jump : the interval, if the load jumps where it begins, else -1
     listed : whether the states at events are kept
     """
     row, motion, counts, tables = memory.row, memory.motion, memory.counts, memory.tables
-    jumped = jump and part == 0
+    jumped = jump >= 0 and part == 0
     changed = jumped
-    if part == 0 and has_varying_spring(problem):
+    if part == 0 and (bends(course.direct) or has_varying_spring(problem)):
+        leaps = memory.box[0]
+        leaps[:] = 0.0
+        if jumped:
+            _note_leaps(course, jump, leaps)
         changed |= begin_springs(
-            problem, row, friction, motion, kept, motion.scratch[_SENSE], course.ties, memory.rests
+            problem, row, friction, motion, kept, motion.scratch[_SENSE], course, memory.rests, leaps
         )
     if jumped and not _jump(problem, friction, memory, course.ties, kept):
         return UNDETERMINED

@@ -4,6 +4,9 @@ There the normal load may jump, and its slope.  A slider has no mass: where the 
 its spring it slips at once until the force is at the limit, and the spring does this work.  Where the limit
 rises from the force of a slider that slips, or rises faster than the force, the slider stops.  A contact
 without load for a whole interval is open: its slider follows it without a force, and turns with it.
+
+A load that displaces a contact beside the modes does so at once: where it jumps, or its slope, so does the
+place or the velocity of the wall, and what holds of limits holds of walls.
 """
 
 import math
@@ -13,7 +16,7 @@ from ..general.laws.kinds import has_force
 from ..general.problem import LOAD_TERMS, F, slide_velocity, varies, velocity_row
 from ..general.record import OF_FRICTION
 from ..general.row import set_channels
-from .kept import LARGEST, PRESENT, list_changes
+from .kept import LARGEST, OF_BASE, PRESENT, list_changes
 
 #: Share of the terms of a normal load that is rounding error of their sum.
 _SAME = 1e-13
@@ -31,6 +34,16 @@ def has_varying_spring(problem):
     found = False
     for j in range(problem.spring.size):
         found = found or (has_force(problem, j) and varies(problem, j))
+    return found
+
+
+@kernel
+def bends(direct):
+    """Whether the place or the velocity of a wall may jump; `direct`: rows of that of `course.Course`."""
+    found = False
+    for j in range(direct.shape[0]):
+        for d in range(direct.shape[1]):
+            found = found or direct[j, d] != 0.0
     return found
 
 
@@ -67,6 +80,53 @@ def _jump(problem, row, friction, motion, kept):
 
 
 @kernel
+def _add_slide(kept, j, way, work):
+    """Add a slide that takes no time."""
+    kept.record.distance[j] += way
+    kept.record.works[OF_FRICTION, j] += work
+    kept.slides[PRESENT, j] += way
+    kept.slides[LARGEST, j] = max(kept.slides[LARGEST, j], kept.slides[PRESENT, j])
+
+
+@kernel
+def follow_walls(problem, row, friction, motion, leaps, kept):
+    """Let springs follow walls that jump: beyond their limits, sliders begin to slip.
+
+    Parameters
+    ----------
+    problem, row, friction, motion, kept : see `motions_in_time.follow_record`; the polynomials are in
+        `row.loads`
+    leaps : (N,) how far the walls jump; filled with what sliders slip at once, see `slip_with_walls`
+    """
+    for j in range(motion.sense.size):
+        leap, leaps[j] = leaps[j], 0.0
+        if leap == 0.0:
+            continue
+        limit, _, _ = _limit(problem, row, friction, j)
+        before = motion.state[F, j]
+        if motion.sense[j] != 0 and not varies(problem, j):  # the state has no forces of sliders
+            before = motion.sense[j] * limit
+        force = before - problem.spring[j] * leap
+        leaps[j] = max(0.0, abs(force) - limit) / problem.spring[j]
+        motion.sense[j] = 0
+        motion.fresh[j] = 0
+        if leaps[j] > 0.0:
+            motion.sense[j] = 1 if force > 0.0 else -1
+            force = motion.sense[j] * limit
+        motion.state[F, j] = force
+        kept.works[OF_BASE] += 0.5 * (force * force - before * before) / problem.spring[j] + limit * leaps[j]
+
+
+@kernel
+def slip_with_walls(problem, row, friction, leaps, kept):
+    """Add what sliders slip at once with walls that jump."""
+    for j in range(leaps.size):
+        if leaps[j] > 0.0:
+            limit, _, _ = _limit(problem, row, friction, j)
+            _add_slide(kept, j, leaps[j], limit * leaps[j])
+
+
+@kernel
 def _slip_at_once(problem, row, friction, motion, kept):
     """Let sliders slip until their forces are at their limits."""
     for j in range(motion.sense.size):
@@ -75,10 +135,7 @@ def _slip_at_once(problem, row, friction, motion, kept):
         limit, _, _ = _limit(problem, row, friction, j)
         force = abs(motion.state[F, j])
         way = max(0.0, force - limit) / problem.spring[j]
-        kept.record.distance[j] += way
-        kept.record.works[OF_FRICTION, j] += 0.5 * (force + limit) * way
-        kept.slides[PRESENT, j] += way
-        kept.slides[LARGEST, j] = max(kept.slides[LARGEST, j], kept.slides[PRESENT, j])
+        _add_slide(kept, j, way, 0.5 * (force + limit) * way)
         motion.state[F, j] = motion.sense[j] * limit
 
 
@@ -142,10 +199,10 @@ def rest_tied(problem, row, friction, motion, ties, rests, order):
 
 
 @kernel
-def _bend(problem, row, friction, motion):
+def _bend(problem, row, friction, motion, direct):
     """Stop sliders whose limits rise faster than their forces, or turn them at a limit of 0."""
     for j in range(motion.sense.size):
-        if not (has_force(problem, j) and varies(problem, j)):
+        if not (has_force(problem, j) and (varies(problem, j) or bends(direct[j : j + 1]))):
             continue
         limit, rate, error = _limit(problem, row, friction, j)
         w, lag = slide_velocity(problem, row, motion, j), rate / problem.spring[j]
@@ -186,15 +243,16 @@ def follow_open(problem, row, motion, before):
 
 
 @kernel
-def begin_springs(problem, row, friction, motion, kept, before, ties, rests):
-    """Decide what springs under varying normal loads do where an interval begins.
+def begin_springs(problem, row, friction, motion, kept, before, course, rests, leaps):
+    """Decide what springs do under varying normal loads, or at walls that bend, where an interval begins.
 
     Parameters
     ----------
     problem, row, friction, motion, kept : see `motions_in_time.follow_record`; the polynomials are in
         `row.loads`
     before : (N,) scratch
-    ties, rests : see `rest_tied`
+    course, leaps : see `course.Course`, `follow_walls`
+    rests : see `rest_tied`
 
     Returns
     -------
@@ -208,9 +266,11 @@ def begin_springs(problem, row, friction, motion, kept, before, ties, rests):
             before[j] = motion.sense[j]
         if part == 0:
             _jump(problem, row, friction, motion, kept)
+            follow_walls(problem, row, friction, motion, leaps, kept)
         else:
             _slip_at_once(problem, row, friction, motion, kept)
-            _bend(problem, row, friction, motion)
-            rest_tied(problem, row, friction, motion, ties, rests, 0)
+            slip_with_walls(problem, row, friction, leaps, kept)
+            _bend(problem, row, friction, motion, course.direct)
+            rest_tied(problem, row, friction, motion, course.ties, rests, 0)
         list_changes(row, motion, before, 0.0, kept)
     return kept.counts[0] > listed

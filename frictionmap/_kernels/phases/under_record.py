@@ -259,10 +259,10 @@ def follow_part(memory, problem, cell, course, kept, part, jump, listed):
     ----------
     memory, problem, cell, course, kept : see `motions_in_time.follow_record`
     part : number of the part; its polynomials are in `memory.channels`
-    jump : whether the load jumps where the interval begins
+    jump : the interval, if the load jumps where it begins, else -1
     listed : whether the states at events are kept
     """
-    jumped = jump and part == 0
+    jumped = jump >= 0 and part == 0
     if jumped and not _jump(problem, cell, memory, kept):
         return UNDETERMINED
     return _cross(problem, cell, memory, kept, jumped, listed)
@@ -289,7 +289,7 @@ def _go_on(problem, cell, memory, senses):
 
 
 @kernel
-def begin(memory, problem, cell, course, start, senses):
+def begin(memory, problem, cell, course, start, senses, _):
     """Set the state and the pattern at the start; False if the contacts do not determine their forces.
 
     memory, problem, cell, course, start, senses : see `motions_in_time.follow_record`

@@ -129,9 +129,10 @@ def _from_mapping(given: Mapping[Any, Any]) -> Modes:
     for key in ("frequencies", "shapes"):
         if key not in given:
             raise InputError("modes", f"must have {key}; got {', '.join(map(str, given)) or 'nothing'}")
+    of_base: dict[str, Any] = {name: given.get(name) for name in OF_BASE}
     return Modes(
         given["frequencies"], given.get("damping_ratios"), normalised_shapes(given), given.get("points"),
-        given.get("residual"), given.get("compliance"), **{name: given.get(name) for name in OF_BASE},
+        given.get("residual"), given.get("compliance"), **of_base,
     )  # fmt: skip
 
 

@@ -237,7 +237,7 @@ def participation(ends: Ends, b: np.ndarray, tips: Tips = BARE) -> np.ndarray:
 
 
 def rigid_participation(ends: Ends) -> np.ndarray:
-    """The same of the rigid-body modes, (0 to 2,)."""
+    """Loads on the rigid-body modes by that acceleration, (0 to 2,)."""
     return np.asarray(rigid_lines(ends) @ [1.0, 0.5])
 
 

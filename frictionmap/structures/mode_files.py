@@ -90,7 +90,7 @@ def read_modes(path: Path, keep: Sequence[str] | None = None, normalised: bool =
         for one in (found.residual, found.compliance)
     )
     names = [points[row] for row in rows]
-    of_base = {name: _numbers_in(found, name, order, rows, path) for name in found.of_base}
+    of_base: dict[str, Any] = {name: _numbers_in(found, name, order, rows, path) for name in found.of_base}
     return Modes(
         found.w[order], zeta, shapes[rows][:, order], names, residual, compliance, f"file {path.name}",
         **of_base,

@@ -283,8 +283,15 @@ def test_structures_by_their_modes_are_the_same():
         grid = {"wall_speed": [0.05, 0.2, 1.5], "beta": [0.1, 0.6], "mu": [1.0, 1.3]}
         expected, found = (fm.sweep(one, **grid) for one in (whole, modal))
         assert len(set(expected.regime.values.ravel())) > 1
+        # averages of motions that do not repeat depend on all digits
+        done = expected.status == 0
+        assert (found.status == expected.status).all()
+        assert int(done.sum()) >= 10
         for name in expected.data_vars:
-            np.testing.assert_allclose(found[name], expected[name], rtol=1e-9, atol=1e-10, err_msg=name)
+            of_cells = {"mu", "wall_speed", "beta"} <= set(expected[name].dims)
+            pair = [one[name].where(done) if of_cells else one[name] for one in (found, expected)]
+            within = 1e-5 if name == "multiplier" else 1e-10  # one that is 0 is the root of rounding error
+            np.testing.assert_allclose(*pair, rtol=1e-9, atol=within, err_msg=name)
         assert found.point_name.values.tolist() == ["low", "top"]
     top = fm.System(
         modes=fm.Modes(whole.modes.w, ratios, whole.modes.phi[1:], ["top"]),

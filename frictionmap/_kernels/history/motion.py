@@ -286,7 +286,7 @@ def _sense_at_start(problem, row, motion, j):
 
 @kernel
 def _note_leaps(course, k, leaps):
-    """Fill how far the walls of springs jump where interval k begins, but for rounding error."""
+    """Fill how far the walls of springs jump where interval k begins, except for rounding error."""
     for j in range(leaps.size):
         leaps[j], size = 0.0, 0.0
         for d in range(course.direct.shape[1]):

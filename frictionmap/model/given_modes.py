@@ -203,7 +203,7 @@ def on_modes(system: Owner, modes: Modes, contacts: ContactSystem, frequency: fl
         )
     points = Points(
         shapes, contacts.vectors, contacts.forces, contacts.offset, residual,
-        *_of_base(modes, frequency, system.stiffness_scale, residual is not None),
+        *_base_parts(modes, frequency, system.stiffness_scale, residual is not None),
     )  # fmt: skip
     check_residual(points, contacts.groups)
     for group in contacts.groups:
@@ -212,7 +212,7 @@ def on_modes(system: Owner, modes: Modes, contacts: ContactSystem, frequency: fl
     return contacts.in_modes(points)
 
 
-def _of_base(
+def _base_parts(
     modes: Modes, frequency: float, stiffness: float, softer: bool
 ) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray | None]:
     """What a base that moves does, dimensionless: three attributes of `Points`."""

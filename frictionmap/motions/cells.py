@@ -253,7 +253,7 @@ class Motions:
             return self.held.rest @ self.state_at_end(one)
         return one.state[0] if one.status == CREEPING else None
 
-    def _beside(self, one: Found) -> np.ndarray:
+    def _residual_places(self, one: Found) -> np.ndarray:
         """What forces in contacts displace beside the modes where these come to rest, (p,)."""
         forces = self.held.bed.forces @ self.state_at_end(one)
         return self.structure.beside_modes(one.kept.forces if one.status == CREEPING else forces)
@@ -261,7 +261,7 @@ class Motions:
     def places(self, one: Found) -> np.ndarray:
         """Where the masses, or points, come to rest, (n,)."""
         found = np.asarray(self.structure.shapes @ one.place)
-        return found + self._beside(one) if self.structure.softer else found
+        return found + self._residual_places(one) if self.structure.softer else found
 
     def contact_places(self, one: Found) -> np.ndarray:
         """Where the contacts come to rest, (N,)."""
@@ -271,5 +271,5 @@ class Motions:
         places = self.problem.chi @ one.place - self.problem.base @ walls
         points = self.structure.points
         if points is not None and self.structure.softer:
-            places = places + points.vectors @ self._beside(one)
+            places = places + points.vectors @ self._residual_places(one)
         return np.where(moving, np.nan, places)

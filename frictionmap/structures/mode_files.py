@@ -198,7 +198,7 @@ def _read_mat(path: Path) -> FileModes:
 
 
 def _read_csv(path: Path) -> FileModes:
-    """A row per mode: frequency_Hz, optionally damping_ratio, modal_mass, participation; a column per point."""
+    """A row per mode: frequency_Hz, perhaps damping_ratio, modal_mass, participation; a column per point."""
     with open(path, encoding="utf-8-sig", newline="") as file:
         try:
             rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]

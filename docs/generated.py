@@ -28,7 +28,7 @@ _GROUPS: Mapping[str, tuple[str, ...]] = {
     "Maps": ("sweep", "boundaries", "borders", "shares", "Solver"),
     "Responses": ("response", "curves", "continuous_motion"),
     "Features that need no map": ("features.",),
-    "Records and motions in time": ("Record", "history", "spectrum", "stationary"),
+    "Records and motions in time": ("Record", "history", "spectrum", "stationary", "ring_down"),
     "Design": ("design.",),
     "Identification from measured data": ("identify.",),
     "Pictures": (

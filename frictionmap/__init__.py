@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     from .model.system import System
     from .motions.dataset import history
     from .motions.record import Record
+    from .motions.ring_down import ring_down
     from .motions.statistics import stationary
     from .plot import (
         animate,
@@ -157,6 +158,7 @@ __all__ = [
     "regimes",
     "response",
     "ring",
+    "ring_down",
     "shares",
     "spectrum",
     "stationary",
@@ -209,6 +211,7 @@ _HOME = {
     "plot_structure": "plot",
     "ring": "model.sectors",
     "response": "steady.response",
+    "ring_down": "motions.ring_down",
     "shares": "probabilities",
     "spectrum": "stores.spectrum",
     "stationary": "motions.statistics",

@@ -49,11 +49,13 @@ def row_of(system: BankSystem, problem: Problem, modes: Modal, r: float) -> Row:
     load = np.abs(parts[:, :, :-1]).sum(axis=(0, 1))
     size = float((load / (modes.squares + r * r)).max())
     chi = problem.chi**2
+    with np.errstate(divide="ignore", invalid="ignore"):  # nothing restores a rigid-body mode
+        softness = (chi / modes.squares).sum(axis=1)
     damping = np.linalg.norm(problem.damping, 2) if problem.coupled else np.diag(problem.damping).max()
     return Row(
-        r, float(max(orders)), float(damping), float(modes.squares.max()),
+        r, float(max(orders, default=0)), float(damping), float(modes.squares.max()),
         size if size > 0.0 else 1.0, all(n % 2 == 1 for n in orders), np.array(orders, dtype=float),
-        np.ascontiguousarray(parts), (chi / modes.squares).sum(axis=1), chi.sum(axis=1),
+        np.ascontiguousarray(parts), softness, chi.sum(axis=1),
     )  # fmt: skip
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import NoSteadyState
 from ..model.settings import Solver
 from ..model.system import System
-from ..phases.cycle import NODES, SECTION, TURN, WEIGHTS, Cycle, Points
+from ..phases.cycle import NODES, SECTION, TURN, WEIGHTS, Cycle, Points, in_contacts
 from .given import bank_system, no_slip_limits, starts_of
 from .motion import Steps, at_times, traces_at
 from .solve import Found, find_motion
@@ -61,3 +61,22 @@ def find_cycle(system: System, r: float, beta: float, solver: Solver) -> BankCyc
             f"periods; raise solver.cycles"
         )
     return BankCycle(system, r, found, found.steps)
+
+
+def stretch_at_maximum(cycle: BankCycle, beta: float) -> np.ndarray:
+    """Elongations of the springs of the elements at tau = 0, (E,), from those at the section.
+
+    In a step the motion in a contact has one sense, and an element follows it up to its limit.
+    """
+    found, steps, end = cycle.found, cycle.steps, 2.0 * np.pi - SECTION
+    assert found.stretch is not None
+    tau = SECTION + np.append(steps.begins[steps.begins < end], end)
+    motion = at_times(steps, cycle.modal.squares.size, tau)
+    z = in_contacts(cycle, found.problem.chi @ motion.q, tau)
+    contacts = bank_system(cycle.system, cycle.r).contacts
+    limit = np.concatenate([one.limits(np.array([beta]))[0] for one in contacts])
+    many = np.diff(found.problem.first)
+    stretch = found.stretch
+    for way in np.diff(z, axis=1).T:
+        stretch = np.clip(stretch + np.repeat(way, many), -limit, limit)
+    return stretch

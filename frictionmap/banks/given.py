@@ -8,7 +8,7 @@ from ..errors import InputError
 from ..general.held import least_static_friction, linear_parts, orders_of, stick_scales
 from ..general.problem import modal_system
 from ..general.starts import states_at
-from ..model.general import DISPLACEMENT, MergedContact
+from ..model.general import DISPLACEMENT, ContactSystem, MergedContact
 from ..model.system import System
 from ..phases.arrays import modal
 from .arrays import fastest, problem_of
@@ -39,6 +39,7 @@ def _refuse_group(group: MergedContact, key: str) -> None:
         ("wall_velocity", bool(first.wall_velocity), "a wall that moves at constant velocity"),
         ("wall_speed", bool(first.wall_speed), "a wall that moves at constant velocity"),
         ("normal_load", bool(first.nu), "a normal load that varies"),
+        ("normal_record", first.normal_record is not None, "a normal load that varies"),
         ("normal", group.normal is not None, "a contact that opens"),
     ):
         if there:
@@ -61,18 +62,23 @@ def _bank(group: MergedContact, key: str) -> Bank:
     return ordered(group.vector, stiffness, ratio, force, float(group.base))
 
 
-def bank_system(system: System, r: float) -> BankSystem:
-    """The structure, contacts and loads of a system at one frequency ratio > 0."""
-    general = system.contact_system
+def banks_of(general: ContactSystem) -> tuple[Bank, ...]:
+    """The contacts of a system."""
     if general.springs:
         raise InputError(
             "cannot use", "springs", "with a bank as one contact: this is not offered there; omit it"
         )
+    return tuple(_bank(group, f"contacts[{k}]") for k, group in enumerate(general.groups, 1))
+
+
+def bank_system(system: System, r: float) -> BankSystem:
+    """The structure, contacts and loads of a system at one frequency ratio > 0."""
+    general = system.contact_system
+    contacts = banks_of(general)
     if system.base_control != DISPLACEMENT:
         system = system.at_frequency(r)
         general = system.contact_system
     modes = system.modes
-    contacts = tuple(_bank(group, f"contacts[{k}]") for k, group in enumerate(general.groups, 1))
     loads = {n: linear_parts(system, modes.stiffness, n, np.array([r]))[1][0] for n in orders_of(general)}
     moved = dict(general.base) if any(one.moved for one in contacts) else {}
     offset = np.linalg.solve(modes.stiffness, general.offset) if general.offset.any() else None

@@ -3,13 +3,14 @@
 import numpy as np
 import xarray as xr
 
+from ..datasets.variables import label_variable
 from ..general.dataset import refuse_static
 from ..general.response import load_over
 from ..model.settings import Solver
 from ..model.system import System
 from ..phases.cycle import SECTION, in_contacts
 from ..phases.response import motion_dataset
-from .cycle import BankCycle, find_cycle
+from .cycle import BankCycle, find_cycle, stretch_at_maximum
 from .dataset import TABLE, limit_variables
 from .given import check_ratios
 from .motion import at_times
@@ -59,4 +60,6 @@ def bank_response(
     cycle = find_cycle(system, r, beta, solver)
     tau = np.linspace(0.0, 2.0 * np.pi, points + 1)
     limits = limit_variables(system, np.array([r]))
-    return motion_dataset(cycle, beta, mu, tau, _traces(cycle, tau), _events(cycle), limits, TABLE)
+    ds = motion_dataset(cycle, beta, mu, tau, _traces(cycle, tau), _events(cycle), limits, TABLE)
+    ds["elongation"] = label_variable("elongation", stretch_at_maximum(cycle, beta))
+    return ds

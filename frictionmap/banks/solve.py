@@ -110,6 +110,7 @@ class Found(NamedTuple):
     averaged: int  # periods of the load that its steps cover; 0: none was found
     period: int
     steps: Steps | None
+    stretch: np.ndarray | None = None  # (E,) elongations of the springs of the elements at the section
 
 
 def find_motion(system: BankSystem, r: float, beta: float, limit: float, start: Start, cycles: int) -> Found:
@@ -128,7 +129,21 @@ def find_motion(system: BankSystem, r: float, beta: float, limit: float, start: 
     if averaged <= 0:
         return Found(problem, modes, shapes, numbers, 0, 0, None)
     _, motion = _one(problem, row, grid, int(motion.record.count[0]))
-    return Found(problem, modes, shapes, numbers, averaged, averaged, steps_of(problem, motion, offset))
+    stretch = _stretch(problem, grid.limit[0], motion)
+    return Found(
+        problem, modes, shapes, numbers, averaged, averaged, steps_of(problem, motion, offset), stretch
+    )  # fmt: skip
+
+
+def _stretch(problem: Problem, limit: np.ndarray, motion: Any) -> np.ndarray:
+    """Elongations of the springs of the elements (E,) of a motion at the section; its load is that there."""
+    now = motion.now
+    z = problem.chi @ now.q - problem.moved * motion.loads[0, -1]
+    many = np.diff(problem.first)
+    contact = np.repeat(np.arange(many.size), many)
+    slips = np.arange(contact.size) - problem.first[contact] < now.level[contact]
+    held = z[contact] - now.place + now.side * limit
+    return np.where(slips, now.sense[contact] * limit, held)
 
 
 def _one(problem: Problem, row: Any, grid: Grid, steps: int) -> tuple[Cells, Any]:

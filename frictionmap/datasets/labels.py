@@ -824,6 +824,12 @@ HISTORY_VARIABLES = {
         np.int8, "direction of the motion in the contact that begins", ("event",), _SENSES
     ),
     "event_z": Label(np.float64, "motion in the contact at the event, over P/k1 (Y)", ("event",)),
+    "elongation": Label(
+        np.float64,
+        "elongation of the spring of each element of a bank at tau = 0, over P/k1 (Y)",
+        ("element",),
+        comment="elements of one contact in the order in which they slip",
+    ),
     "load": Label(np.float64, "sum of the loads on the masses, over P", ("tau",)),
     "event_contact": Label(np.int64, "contact that the event is of, counted from 1", ("event",), least=1),
     "normal_force": Label(np.float64, "normal force in the contact, over P", ("tau",), least=0.0, nan=True),
@@ -889,7 +895,7 @@ MEASURES = {
         "first_harmonic_amplitude", "displacement_harmonic", "contact_harmonic", "rms", "held_response",
         "limit_amplitude", "limit_first_harmonic_amplitude", "x", "z", "event_z", "contact_peak_to_peak",
         "contact_midpoint", "peak_to_peak", "midpoint", "least_slip",
-        "drift",
+        "drift", "elongation",
     ),
     "force": (
         "beta_lim", "beta_lim_modal", "beta_stick", "sliding_limit", "beta_lim_high", "beta_stick_high",

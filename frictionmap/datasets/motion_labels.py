@@ -81,7 +81,10 @@ MOTIONS = {
     "z": _real(f"motion in the contact, {_X}", "time"),
     "friction": _real(f"friction force against the motion in the contact, {_F}", "time"),
     "direction": Label(np.int8, "direction of the motion in the contact", (*CELL, "time"), SENSES),
-    "y": _real(f"displacement of the slider of an elastic contact, {_X}", "time"),
+    "y": _real(
+        f"displacement of the slider of an elastic contact, {_X}", "time",
+        comment="of a bank the mean over its elements by their stiffness",
+    ),
     "normal_force": _size(
         f"normal force in the contact, {_F}", "time", comment="NaN where the motion does not change it"
     ),
@@ -132,6 +135,11 @@ MOTIONS = {
     "normal_force_min": _size(f"least normal force in the contact, {_F}"),
     "spring_force_max": _size(f"largest force of a piecewise linear spring, {_F}", "spring"),
     "spring_crossings": _size("knots that a piecewise linear spring passes", "spring"),
+    "element_contact": Label(np.int64, "contact of each element of a bank", ("element",), least=1),
+    "elongation": _real(
+        f"elongation of the spring of each element of a bank at the end, {_X}", "element",
+        comment="elements of one contact in the order in which they slip",
+    ),
     "sliding_distance": _size(f"sliding distance, {_X}"),
     "largest_slide": _size(f"longest distance of a slide, {_X}"),
     "work_load": _real(f"work of the load, {_E}", comment="of -M iota a where the base moves"),
@@ -214,7 +222,7 @@ TIMES = (
 IN_SI: dict[str, tuple[str, ...]] = {
     "length": (
         "x", "z", "y", "amplitude", "contact_amplitude", "x_max", "x_min", "z_max", "z_min", "residual",
-        "contact_residual", "sliding_distance", "largest_slide",
+        "contact_residual", "sliding_distance", "largest_slide", "elongation",
     ),
     "velocity": ("v",),
     "acceleration": ("acceleration", "acceleration_amplitude", "acceleration_max", "acceleration_min"),

@@ -148,6 +148,12 @@ class MergedContact:
         return isinstance(self.first.stiffness, tuple)
 
     @property
+    def element_count(self) -> int:
+        """Number of elements, 1 of a contact that is no bank."""
+        own = self.first.stiffness
+        return len(own) if isinstance(own, tuple) else 1
+
+    @property
     def name(self) -> str:
         """Names of the members."""
         return " + ".join(member.label for member in self.members)
@@ -407,7 +413,7 @@ def refuse_banks(system: Definition, what: str) -> None:
     for group in () if system.general is None else system.general.groups:
         if group.is_bank:
             raise InputError(
-                f"cannot {what} with {group.name}, a bank of {len(group.first.elements)} elements as one "
+                f"cannot {what} with {group.name}, a bank of {group.element_count} elements as one "
                 f"contact: this is offered where up to {MOST_CONTACTS} elements are contacts; use "
                 f'bank = "elements"'
             )

@@ -20,8 +20,10 @@ starts           states at the beginning: at rest, given, or where another motio
 cells            the motions of a grid of records, scales and friction, on several threads
 phase_beds       one phase of contacts that open and springs, under no load: its place of rest, asleep
 opening          motions of systems with such contacts and piecewise linear springs
+bank_motions     motions of systems whose contacts are banks of elastic elements
 statistics       medians, quantiles, exceedance over records; means of stationary motions over time
 averages         statistics of stationary motions beside their histories
+ring_down        `ring_down`: frequency and damping of a decay over its amplitude, from its turning points
 holding          the largest forces in contacts that all hold: the friction from which nothing moves
 opening_holding  the same of contacts that open, and beside piecewise linear springs
 energies         energies of one motion over time

@@ -13,6 +13,7 @@ from .._kernels.history.motion import Memory, make_memory
 from .._kernels.motions_in_time import NEEDS_BED, SINCE, follow_record
 from .bed import held
 from .channels import Drive
+from .energies import energies_over_time
 from .starts import Start
 from .structure import Structure, problem_of, ties_of, varying, watched_of
 
@@ -50,6 +51,15 @@ class Opened(NamedTuple):
     base: np.ndarray  # (2, 2 + states) place and velocity of the base: at first, at the end, at the states
 
 
+class Elements(NamedTuple):
+    """What a motion has besides whose contacts are banks of E elements."""
+
+    stretch: np.ndarray  # (2, E) elongations of the springs of the elements at the start and at the end
+    energy: np.ndarray  # (2,) of these springs
+    stored: np.ndarray  # (N, times) the same of every contact at the states that are kept
+    lost: np.ndarray  # (N, times) lost in every contact since the beginning
+
+
 class Found(NamedTuple):
     """One motion."""
 
@@ -63,6 +73,7 @@ class Found(NamedTuple):
     asleep: float  # since when no contact moves again; NaN where this is not proved
     place: np.ndarray | None  # (m,) modes where it comes to rest; None where it may move on
     opened: Opened | None = None
+    elements: Elements | None = None
 
 
 def starting(structure: Structure, start: Start) -> np.ndarray:
@@ -233,6 +244,23 @@ class Motions:
         elastic = self.structure.spring > 0.0
         springs = (f[elastic].T ** 2 / self.structure.spring[elastic]).sum(axis=-1)
         return np.asarray(0.5 * ((p**2).sum(axis=0) + self.problem.squares @ q**2 + springs))
+
+    def energies_at_ends(self, one: Found, start: Start) -> tuple[float, float]:
+        """Energy at the start and at the end."""
+        q, p = one.state
+        before = self.energy(start.q, start.p, start.f, one, 0)
+        return float(before), float(self.energy(q, p, one.kept.forces, one, 1))
+
+    def energies(self, one: Found, states: np.ndarray, slider: np.ndarray) -> dict[str, np.ndarray]:
+        """Energies at the states of one motion; arguments as of `energies_over_time`."""
+        m, contacts = self.problem.squares.size, self.structure.spring.size
+        q, p, f = np.split(states[1 : 1 + 2 * m + contacts], (m, 2 * m))
+        stored = self.energy(q, p, f, one, SHOWN)
+        return energies_over_time(self.structure, stored, self.problem.belt, states, slider)
+
+    def needed_friction(self, forces: np.ndarray) -> np.ndarray:
+        """Friction of each contact (N,) that holds against forces of this size."""
+        return forces
 
     def further_scalars(self, one: Found) -> dict[str, np.ndarray]:
         """Numbers of one motion that only some systems have."""

@@ -15,15 +15,16 @@ from ..datasets.provenance import excitation_of, now
 from ..errors import InputError
 from ..general.dataset import refuse_static
 from ..jobs import Progress, Watch, run_counted
+from ..model.general import ContactSystem
 from ..model.system import System
 from ..model.variations import checked_variations
 from ..phases.dataset import spring_coordinates
 from ..units.scales import Scales, Units, scales_of
 from ..version import __version__
 from .averages import asked_averages, averages_of, describe_averages
-from .cells import SHOWN, Asked, Found, Motions
+from .bank_motions import BankMotions
+from .cells import Asked, Found, Motions
 from .channels import drive_of
-from .energies import energies_over_time
 from .further_axes import axis_coordinates, part_of_progress, stacked
 from .holding import holding_friction
 from .opening import OpeningMotions
@@ -299,6 +300,13 @@ class Followed(NamedTuple):
     hold: np.ndarray | None  # (records, scales, mu, N) static friction that holds every contact, where wanted
 
 
+def _kind_of(general: ContactSystem) -> tuple[type[Motions], Callable]:
+    """What follows the motions of a system, and what finds the friction that holds its contacts."""
+    if general.has_banks:
+        return BankMotions, holding_friction
+    return (OpeningMotions, opening_holding_friction) if general.has_phases else (Motions, holding_friction)
+
+
 def _follow(
     structure: Structure, grid: Grid, scales: Scales, asked: Asked, wanted: tuple[bool, bool],
     threads: int | None, progress: Progress | None, watch: Watch | None,
@@ -306,9 +314,7 @@ def _follow(
     """Follow all motions; wanted: the states at events, and the forces with all contacts held."""
     general = structure.system.contact_system
     factors = [scale_of(one, scales) for one in grid.records]
-    kind, held = (
-        (OpeningMotions, opening_holding_friction) if general.has_phases else (Motions, holding_friction)
-    )
+    kind, held = _kind_of(general)
     motions = [
         kind(structure, drive_of(structure.system, one, factor))
         for one, factor in zip(grid.records, factors, strict=True)
@@ -360,10 +366,8 @@ def _scalars(structure: Structure, motions: Motions, one: Found, asked: Asked) -
     kept, shapes = one.kept, structure.shapes
     elastic = structure.spring > 0.0
     stops = kept.changes[0]
-    start = asked.start
+    before, energy = motions.energies_at_ends(one, asked.start)
     q, p = one.state
-    energy = float(motions.energy(q, p, kept.forces, one, 1))
-    before = float(motions.energy(start.q, start.p, start.f, one, 0))
     walls = float(kept.works[1] + kept.record.works[1].sum())
     rests = one.place is not None
     turn = structure.given_modes
@@ -396,8 +400,7 @@ def _traces(structure: Structure, motions: Motions, one: Found, energies: bool) 
         slider = np.where(kt > 0.0, z - f / kt, np.nan)
     if energies:
         still = np.where(kt > 0.0, slider, z)
-        stored = motions.energy(columns[:m], columns[m : 2 * m], f, one, SHOWN)
-        found = energies_over_time(structure, stored, motions.problem.belt, states, still)
+        found = motions.energies(one, states, still)
     else:
         found = {}
     moving = {}
@@ -512,6 +515,9 @@ def _coordinates(structure: Structure, grid: Grid) -> dict[str, xr.Variable]:
         own["point_name"] = np.array(structure.system.dofs.written_labels, dtype=np.str_)
     if general.springs:
         own |= {name: one.values for name, one in spring_coordinates(structure.system).items()}
+    if general.has_banks:
+        counts = [group.element_count for group in general.groups]
+        own["element_contact"] = np.repeat(np.arange(1, general.count + 1), counts)
     names = [one.name or one.quantity for one in grid.records]
     own["record_name"] = np.array(names, dtype=np.str_)
     if general.count > 1:

@@ -33,7 +33,7 @@ _MOST_STEPS = 60
 
 def holding_friction(motions: Motions, scale: np.ndarray, mu: np.ndarray, asked: Asked) -> np.ndarray:
     """Static friction that holds the contacts, (scales, mu, N)."""
-    found = np.abs(scale)[:, np.newaxis] * largest_forces(motions, asked)
+    found = np.abs(scale)[:, np.newaxis] * motions.needed_friction(largest_forces(motions, asked))
     return np.repeat(found[:, np.newaxis], mu.size, axis=1)
 
 

@@ -26,6 +26,7 @@ class Start(NamedTuple):
     p: np.ndarray  # (m,) q'
     f: np.ndarray  # (N,) forces of springs in contacts
     sense: np.ndarray  # (N,) int; BY_LAW where it follows from the velocities
+    stretch: np.ndarray | None = None  # (E,) elongations of the springs of the elements of banks; None: 0
 
     @property
     def moves(self) -> bool:
@@ -111,7 +112,8 @@ def _from_motion(structure: Structure, ds: xr.Dataset) -> Start:
     axis = "time" if "time" in ds.dims else "tau"
     by_modes = structure.points is not None and (axis == "time" or structure.softer)
     place, velocity = ("modal_place", "modal_velocity") if by_modes else ("x", "v")
-    needed = [axis, place, velocity, "friction", "direction"]
+    banks = structure.system.contact_system.has_banks
+    needed = [axis, place, velocity, "friction", "direction", *(["elongation"] if banks else [])]
     missing = [name for name in needed if name not in ds.variables]
     if missing:
         raise InputError("start", f"must have {', '.join(needed)}, as a history has; got no {missing[0]}")
@@ -133,5 +135,21 @@ def _from_motion(structure: Structure, ds: xr.Dataset) -> Start:
     f, sense = np.atleast_1d(last["friction"]).astype(float), np.atleast_1d(last["direction"])
     if f.shape != (contacts,):
         raise InputError("start", f"must have {contacts} contacts, as the system has; got {f.size}")
+    stretch = _stretch(structure, ds, last) if banks else None
     springs = structure.spring > 0.0
-    return Start(q, rate * p, np.where(springs, f, 0.0), sense.astype(int))
+    return Start(q, rate * p, np.where(springs, f, 0.0), sense.astype(int), stretch)
+
+
+def _stretch(structure: Structure, ds: xr.Dataset, last: xr.Dataset) -> np.ndarray:
+    """Elongations of the springs of the elements of banks, which a history has at its end."""
+    if "end_time" in ds and not np.isclose(float(last["time"]), float(last["end_time"]), rtol=1e-9):
+        raise InputError(
+            "start",
+            f"must have its last sample at its end, {float(last['end_time']):g}, where the elongations of "
+            f'the elements are; got {float(last["time"]):g}; make it with samples = "all"',
+        )
+    count = sum(group.element_count for group in structure.system.contact_system.groups)
+    found = np.atleast_1d(last["elongation"]).astype(float)
+    if found.shape != (count,):
+        raise InputError("start", f"must have {count} elements, as the system has; got {found.size}")
+    return found

@@ -68,9 +68,10 @@ def structure_of(system: System, opens: bool = False) -> Structure:
             "motions of contacts that open and of piecewise linear springs may move apart, so that no bound "
             "holds at all times; follow both motions by history and compare them",
         )  # fmt: skip
-    refuse_banks(system, "compute motions under records")
     system = in_general_form(system)
     general = system.contact_system
+    if general.points is not None:
+        refuse_banks(system, "compute motions under records of a structure given by modes")
     refuse_loop(general)
     if general.flexibility.size:
         raise InputError(

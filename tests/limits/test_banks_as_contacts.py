@@ -276,11 +276,22 @@ def test_what_is_refused_with_a_bank(contacts, more, message):
     assert message in str(error.value)
 
 
+@pytest.mark.parametrize(("contacts", "more", "message"), REFUSED[:2] + REFUSED[3:])
+def test_what_motions_under_records_refuse_with_a_bank(contacts, more, message):
+    record = fm.Record([0.0, 1.0, 0.0], dt=0.5)
+    with pytest.raises(fm.InputError) as error:
+        fm.history(fm.System(contacts=contacts, **CHAIN, **more), record, 0.1)
+    assert message in str(error.value)
+    varying = replace(HALVES, normal_record=record)
+    with pytest.raises(fm.InputError, match=r"cannot use contacts\[1\].normal_record with a bank"):
+        fm.history(fm.System(contacts=[varying], **CHAIN), record, 0.1)
+
+
 def test_other_questions_about_a_bank_are_refused():
     system = fm.System(contacts=[HALVES], **CHAIN)
-    record = fm.Record(np.array([0.0, 1.0, 0.0]), dt=0.5)
+    free = fm.System(contacts=[HALVES], mass_ratios=[1.0, 1.0], stiffness_ratios=[0.0, 1.0])
     with pytest.raises(fm.InputError, match=r'a bank of 2 elements as one contact.*bank = "elements"'):
-        fm.history(system, record, 0.1)
+        fm.sweep(free, [0.5], [0.1])
     with pytest.raises(fm.InputError, match="cannot find friction without stops with contact_stiffness"):
         fm.design.no_stop(system, [0.5, 0.9])
 

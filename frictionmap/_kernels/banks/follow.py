@@ -31,7 +31,7 @@ from .tangent import advance_tangent
 FOLLOWED, CHATTERS = 0, 1
 
 #: Steps of a period, and events of a contact at one time, at most.
-_MOST_STEPS, _MOST_IMMEDIATE = 1000000, 100
+MOST_STEPS, MOST_IMMEDIATE = 1000000, 100
 
 #: Angles of the fastest part of the motion that are rounding errors of one time: velocities that begin at 0
 #: there do so still after them.
@@ -66,7 +66,7 @@ def _forget_turns(motion):
 
 
 @kernel
-def _pass_event(problem, cell, motion, j, what):
+def pass_event(problem, cell, motion, j, what):
     """Change the level or the sense of a contact at an event, with the waves of its time."""
     z = displacement(problem, motion, j)
     if what == TURN:
@@ -80,7 +80,7 @@ def follow(problem, row, cell, begin, end, motion):
     """Follow the motion from one phase to a later one; FOLLOWED or CHATTERS."""
     tau, immediate = begin, 0
     put_waves(row, tau, motion)
-    for _ in range(_MOST_STEPS):
+    for _ in range(MOST_STEPS):
         if tau >= end:
             return FOLLOWED
         length, angle = choose_length(problem, row, cell, motion, end - tau)
@@ -101,10 +101,10 @@ def follow(problem, row, cell, begin, end, motion):
             immediate = 0
         else:
             immediate += 1
-            if immediate > _MOST_IMMEDIATE * problem.moved.size:
+            if immediate > MOST_IMMEDIATE * problem.moved.size:
                 return CHATTERS
         if what != NOTHING:
-            _pass_event(problem, cell, motion, who, what)
+            pass_event(problem, cell, motion, who, what)
     return CHATTERS
 
 

@@ -86,7 +86,7 @@ def friction(problem, cell, motion, j, z):
 
 
 @kernel
-def _put_rates(problem, row, cell, motion, z):
+def put_rates(problem, row, cell, motion, z):
     """Set the accelerations of the modes; z (N, ...) has the displacements first."""
     now, modes = motion.now, problem.squares.size
     square = row.r * row.r
@@ -148,7 +148,7 @@ def choose_length(problem, row, cell, motion, rest):
         for i in range(modes):
             z += problem.chi[j, i] * now.q[i]
         motion.z[j, 0] = z
-    _put_rates(problem, row, cell, motion, motion.z)
+    put_rates(problem, row, cell, motion, motion.z)
     for j in range(problem.moved.size):
         w, rate = -problem.moved[j] * motion.loads[1, modes], 0.0
         for i in range(modes):
@@ -221,13 +221,16 @@ def _put_single_terms(problem, cell, motion, count, scale, damped):
 
 
 @kernel
-def put_series(problem, row, cell, motion, length, angle):
-    """Fill the series of a step of this length; return the number of terms of a displacement."""
+def terms_of_step(angle):
+    """Number of terms of a displacement in a step whose fastest part turns by this angle."""
+    return _COUNTS[min(int(angle / LARGEST * _PARTS), _PARTS - 1)] + 2
+
+
+@kernel
+def put_moves(problem, row, cell, motion, length, count):
+    """Fill the series of modes and displacements in a step of this length; those of the load are there."""
     now, moves, modes, contacts = motion.now, motion.moves, problem.squares.size, problem.moved.size
-    part = min(int(angle / LARGEST * _PARTS), _PARTS - 1)
-    count = _COUNTS[part] + 2
     scale, damped = length * length / (row.r * row.r), length / row.r
-    _put_loads(row, count, length, motion)
     for i in range(modes):
         moves[0, i], moves[1, i] = now.q[i], length * now.p[i]
     if modes == 1 and contacts == 1:
@@ -237,6 +240,14 @@ def put_series(problem, row, cell, motion, length, angle):
     for j in range(contacts):
         for k in range(count, WIDTH):
             motion.z[j, k] = 0.0
+
+
+@kernel
+def put_series(problem, row, cell, motion, length, angle):
+    """Fill the series of a step of this length; return the number of terms of a displacement."""
+    count = terms_of_step(angle)
+    _put_loads(row, count, length, motion)
+    put_moves(problem, row, cell, motion, length, count)
     return count
 
 
@@ -331,14 +342,21 @@ def first_event(problem, cell, motion, count):
 
 
 @kernel
+def mode_at(motion, i, count, x):
+    """Value of a mode at x of the present step, and its slope there."""
+    q, p = 0.0, 0.0
+    for k in range(count - 1, -1, -1):
+        p = p * x + q
+        q = q * x + motion.moves[k, i]
+    return q, p
+
+
+@kernel
 def advance(motion, count, length, x):
     """Move the modes on by x of the present step."""
-    now, moves = motion.now, motion.moves
+    now = motion.now
     for i in range(now.q.size):
-        q, p = 0.0, 0.0
-        for k in range(count - 1, -1, -1):
-            p = p * x + q
-            q = q * x + moves[k, i]
+        q, p = mode_at(motion, i, count, x)
         now.q[i], now.p[i] = q, p / length
 
 

@@ -53,6 +53,15 @@ _BENCHMARK = {
         "quantity": Compilation(1.0, 2),
         "goal": Compilation(26.0, 145),
     },
+    "banks": {
+        "lines": Compilation(0.5, 2),
+        "map": Compilation(15.0, 60),
+        "motion": Compilation(1.0, 2),
+        "others": Compilation(1.0, 2),
+        "cut": Compilation(1.0, 2),
+        "quantity": Compilation(1.0, 2),
+        "goal": Compilation(1.0, 2),
+    },
     "belt": {
         "lines": Compilation(3.0, 20),
         "map": Compilation(6.0, 40),

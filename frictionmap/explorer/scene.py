@@ -10,7 +10,6 @@ import numpy as np
 
 from .. import checks
 from ..errors import InputError
-from ..model.general import refuse_banks
 from ..model.settings import Solver, Start
 from ..model.system import System
 from ..model.variations import named_number
@@ -43,7 +42,6 @@ class Scene:
     unloaded: bool = False  # on a belt, without a load: `r` is the range of belt speeds
 
     def __post_init__(self) -> None:
-        refuse_banks(self.system, "show a page")
         if not self.system.contact_system.count:
             raise InputError(
                 "cannot show a page of a system without contacts: its maps are over the friction in them; "

@@ -48,6 +48,9 @@ _AT_REST = 1e-12
 #: A slip is over for practical purposes below this speed, relative to displacements.
 _CREEP = 1e-15
 
+#: An acceleration above this, relative to displacements, is that of a turn, not of a creep.
+_TURNS = 1e-8
+
 
 @kernel
 def _expand(memory, problem, cell, x):
@@ -230,12 +233,14 @@ def _is_asleep(memory, problem, cell, units, bed):
 @kernel
 def _creeps(memory, problem):
     """Whether elements slip so slowly that rounding error hides it."""
-    now, slips, speed, size = memory.motion.now, False, 0.0, memory.row.size
+    now, slips, speed, rate, size = memory.motion.now, False, 0.0, 0.0, memory.row.size
     for j in range(problem.moved.size):
         slips = slips or now.level[j] != 0
     for i in range(problem.squares.size):
         speed, size = max(speed, abs(now.p[i])), max(size, abs(now.q[i]))
-    return slips and speed <= _CREEP * size
+        rate = max(rate, abs(memory.motion.rate[i]))
+    # at a turn there is an acceleration
+    return slips and speed <= _CREEP * size and rate <= _TURNS * size
 
 
 @kernel

@@ -17,6 +17,7 @@ scaling          what makes a record dimensionless; friction as a force or as an
 bed              the structure with all contacts held under no load: place of rest, asleep or not
 structure        a system under channels as arrays for the kernels, and what is watched of it
 starts           states at the beginning: at rest, given, or where another motion ended
+energies         energies of one motion over time
 cells            the motions of a grid of records, scales and friction, on several threads
 phase_beds       one phase of contacts that open and springs, under no load: its place of rest, asleep
 opening          motions of systems with such contacts and piecewise linear springs
@@ -26,7 +27,6 @@ averages         statistics of stationary motions beside their histories
 ring_down        `ring_down`: frequency and damping of a decay over its amplitude, from its turning points
 holding          the largest forces in contacts that all hold: the friction from which nothing moves
 opening_holding  the same of contacts that open, and beside piecewise linear springs
-energies         energies of one motion over time
 further_axes     motions and spectra along further axes in one dataset
 dataset          `history`: motions in time as labelled variables
 bounds           how far motions with other friction, or under another record, can be

@@ -95,7 +95,14 @@ def _advance(memory, problem, cell, end, kept):
 
 @kernel
 def _pass(memory, problem, cell, j, what, kept, listed):
-    """Change the level or the sense of a contact at an event; slips of further elements are not listed."""
+    """Change the level or the sense of a contact at an event; slips of further elements are not listed.
+
+    Parameters
+    ----------
+    memory, problem, cell, kept : see `follow_record`
+    j, what : contact, and its event, see `step.first_event`
+    listed : whether the states on both sides are kept
+    """
     show = listed and (what == TURN or memory.motion.now.level[j] == 0)
     if show:
         store_state(memory, problem, kept)
@@ -315,7 +322,8 @@ def follow_record(problem, memory, course, start, kept, bed, limits):
 
     Returns
     -------
-    (status, done, asleep) : see `history.course`; intervals followed; after how many of them no element slips again, or -1
+    (status, done, asleep) : see `history.course`; intervals followed; after how many of them no element slips
+        again, -1 if this is not proved
     """
     problem, memory, course = packed(problem), packed(memory), packed(course)
     kept, bed = packed(kept), packed(bed)

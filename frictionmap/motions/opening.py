@@ -140,7 +140,7 @@ class OpeningMotions(Motions):
             push, self.drive.of_base.astype(float), np.array([self.free]), self._ground(),
             np.array([self.rate]), np.ones(1), np.array([terms]), np.zeros((channels, WIDTH)),
             np.zeros((channels, WIDTH)), np.zeros(contacts, np.int64), np.zeros(contacts),
-            np.zeros((8, WIDTH)),
+            np.zeros((8, WIDTH)), np.full(self.free, np.inf),
         )  # fmt: skip
 
     def _ground(self) -> np.ndarray:

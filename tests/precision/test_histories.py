@@ -295,3 +295,15 @@ def test_the_time_after_a_record_in_seconds_is_in_seconds():
     quake = fm.Record([0.0, 1.0, -1.0, 0.0], 0.1, unit="m/s^2")
     ds = fm.history(fm.System(), quake, beta=0.1, units=units, after=1.5)
     assert ds.end_time.item() == pytest.approx(0.3 + 1.5, rel=1e-12)
+
+
+@pytest.mark.parametrize("step", [0.002 / 0.25, 0.25, 0.5])
+@pytest.mark.parametrize("springs", [None, [{"masses": [1], "gap": 10.0, "stiffness": 1.0}]])
+def test_a_turn_at_a_sample_is_no_creep(step, springs):
+    """The amplitude falls by 2 beta in half a cycle; a sample, or every one, is at a turn; both engines."""
+    record = fm.Record([0.0, 0.0], 2.0 * np.pi * step, quantity="force")
+    start = {"x": [3.05], "v": [0.0]}
+    ds = fm.history(fm.System(springs=springs), record, beta=0.1, start=start).squeeze()
+    assert int(ds.status) == 0
+    assert float(ds.turns) == 14.0
+    assert float(ds.residual) == pytest.approx(-0.05, abs=1e-12)

@@ -34,7 +34,7 @@ def test_dry_friction_takes_the_same_from_every_swing():
 
 def test_a_decay_in_seconds_has_hertz():
     units = fm.Units(natural_frequency="4 Hz", stiffness="1000 N/m", load="1 N")
-    silence = fm.Record([0.0, 0.0], 0.0021, quantity="force", unit="N")
+    silence = fm.Record([0.0, 0.0], 0.002, quantity="force", unit="N")
     ds = fm.history(fm.System(), silence, beta=0.1, start={"x": [3.05], "v": [0.0]}, units=units)
     found = fm.ring_down(ds)
     assert found.frequency.attrs["units"] == "Hz"

@@ -27,8 +27,9 @@ EVERY, AFTER, TO_REST, LISTED = 0, 1, 2, 3
 #: Whether a motion has ended: not yet, for all contacts, and not in the phase that is asked about.
 AWAKE, ASLEEP, ELSEWHERE = 0, 1, 2
 
-#: A slide is over for practical purposes below this speed, relative to displacements and the fastest rate.
-_CREEP = 1e-15
+#: A slide is over for practical purposes below this speed, relative to displacements and the fastest rate, if
+#: the structure has moved by less than this share of its displacements since the last sample: not at a turn.
+_CREEP, _MOVED = 1e-15, 1e-12
 
 
 class Course(NamedTuple):
@@ -49,22 +50,23 @@ def parts_of(rate, step):
 
 
 @kernel
-def slides_on_slowly(sense, place, velocity, modes, size):
+def slides_on_slowly(sense, place, velocity, last, size):
     """Whether a contact slides so slowly that rounding error hides it.
 
     Parameters
     ----------
     sense : (N,) of the contacts
-    place, velocity, modes : of the structure, and how many of them there are
+    place, velocity : of the structure
+    last : (m,) its place at the last sample; replaced by the present one
     size : displacement that the load can be expected to cause
     """
     slides = False
     for j in range(sense.size):
         slides = slides or sense[j] != 0
-    if not slides:
-        return False
-    speed = 0.0
-    for m in range(modes):
+    speed, moved = 0.0, 0.0
+    for m in range(last.size):
         speed = max(speed, abs(velocity[m]))
         size = max(size, abs(place[m]))
-    return speed <= _CREEP * size
+        moved = max(moved, abs(place[m] - last[m]))
+        last[m] = place[m]
+    return slides and speed <= _CREEP * size and moved <= _MOVED * size

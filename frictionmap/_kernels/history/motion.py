@@ -86,6 +86,7 @@ class Memory(NamedTuple):
     counts: np.ndarray  # (COUNT_ROWS, N) counters
     places: Places
     rests: np.ndarray  # (N,) bool: springs under varying normal loads that are at rest, see `springs`
+    last: np.ndarray  # (m,) modes at the last sample, see `creeps`
 
 
 @entry
@@ -96,6 +97,7 @@ def make_memory(problem, still, watched, terms, lengths):
     return Memory(
         row, row.loads, make_motion(problem), tables, np.zeros((BOX_ROWS, contacts)),
         np.zeros((COUNT_ROWS, contacts)), make_places(problem), np.zeros(contacts, np.bool_),
+        np.full(problem.squares.size, np.inf),
     )  # fmt: skip
 
 
@@ -405,9 +407,8 @@ def sleep_of(memory, problem, friction, bed):
 def creeps(memory, problem):
     """Whether a contact slides so slowly that rounding error hides it."""
     motion = memory.motion
-    return slides_on_slowly(
-        motion.sense, motion.state[Q], motion.state[P], problem.squares.size, memory.row.numbers[SIZE]
-    )
+    size = memory.row.numbers[SIZE]
+    return slides_on_slowly(motion.sense, motion.state[Q], motion.state[P], memory.last, size)
 
 
 @kernel

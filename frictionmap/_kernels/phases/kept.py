@@ -68,6 +68,7 @@ class Memory(NamedTuple):
     before: np.ndarray  # (N,) int: senses before an event
     places: np.ndarray  # (N,) where rigid contacts are held, relative to their walls
     scratch: np.ndarray  # (8, WIDTH)
+    last: np.ndarray  # (m,) modes of the structure at the last sample, see `under_record.creeps`
 
 
 @kernel

@@ -335,7 +335,7 @@ def keep_sample(memory, problem, kept):
 def creeps(memory, problem):
     """Whether a contact slides so slowly that rounding error hides it."""
     motion = memory.motion
-    return slides_on_slowly(motion.sense, motion.q, motion.p, memory.free[0], memory.row.size)
+    return slides_on_slowly(motion.sense, motion.q, motion.p, memory.last, memory.row.size)
 
 
 @kernel

@@ -8,14 +8,20 @@ import numpy as np
 from .._kernels.banks.fill import Grid, fill_cells
 from .._kernels.banks.problem import Problem
 from .._kernels.phases.fill import AVERAGED, Cells
-from .._kernels.phases.problem import ELASTIC, STUCK
+from .._kernels.phases.problem import ELASTIC, REVERSALS, STUCK
 from ..jobs import Job, Progress, Watch, run_counted
 from ..phases.arrays import Modal, modal
-from ..phases.quantities import TABLE, Solved
+from ..phases.quantities import TABLE as PHASES
+from ..phases.quantities import Solved
 from ..phases.solve import observed_rows
 from .arrays import allocate, grid_of, modal_offset, problem_of, row_of
 from .motion import Steps, steps_of
 from .system import BankSystem, Start
+
+#: Reversals of banks are counted from one period to the next already.
+TABLE = PHASES | {
+    "slip_reversals_per_cycle": lambda solved: solved.per_period(REVERSALS, (ELASTIC,)),
+}
 
 
 def solved_of(problem: Problem, cells: Cells) -> Solved:

@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import regimes
-from .._kernels.general.fill import Grid, fill_rows
+from .._kernels.compiler.lending import Memories, lent
+from .._kernels.general.fill import Grid, fill_rows, make_row_memory
 from .._kernels.general.problem import Problem
-from ..jobs import Watch, run_jobs
+from ..jobs import Job, Watch, run_jobs
 from ..model.system import System
 from .boundaries import friction_lines, sliding_states
 from .outputs import allocate, number
@@ -105,10 +106,14 @@ def stops_of(
     )  # fmt: skip
     found = allocate((1, count, 1), general_of(system).count, 0)
     cancel, none = np.zeros(1, np.uint8), np.empty((0, modal.phi.shape[1]))
-    jobs = [
-        (fill_rows, (first, min(first + _IN_A_JOB, count), problem, grid, found, none, cancel))
-        for first in range(0, count, _IN_A_JOB)
-    ]
+    memories = Memories(lambda: lent(make_row_memory(problem, none)))
+    given = lent(problem), lent(grid), lent(found)
+
+    def fill(first: int) -> None:
+        with memories.one() as memory:
+            fill_rows(first, min(first + _IN_A_JOB, count), *given, memory, cancel)
+
+    jobs: list[Job] = [(fill, (first,)) for first in range(0, count, _IN_A_JOB)]
     try:
         run_jobs(jobs, threads, lambda _: None, watch)
     except BaseException:

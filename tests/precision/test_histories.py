@@ -307,3 +307,25 @@ def test_a_turn_at_a_sample_is_no_creep(step, springs):
     assert int(ds.status) == 0
     assert float(ds.turns) == 14.0
     assert float(ds.residual) == pytest.approx(-0.05, abs=1e-12)
+
+
+def test_forty_contacts_are_forty_masses():
+    """Masses that nothing couples move as each does alone."""
+    stiffness, ratio = np.linspace(0.5, 3.0, 40), np.linspace(0.2, 1.5, 40)
+    samples = np.sin(0.7 * np.arange(60)) * np.exp(-0.03 * np.arange(60))
+    record, all_of_it = (fm.Record(samples, 0.4, quantity="force", vector=one) for one in (None, [1.0] * 40))
+    contacts = [fm.Contact("fixed-wall", k + 1, ratio=one) for k, one in enumerate(ratio)]
+    matrices = {"M": np.eye(40), "K": np.diag(stiffness), "C": np.zeros((40, 40))}
+    scales = {"frequency_scale": 1.0, "stiffness_scale": 1.0}
+    every = fm.history(
+        fm.System(matrices=matrices, contacts=contacts, **scales), all_of_it, beta=0.3
+    ).squeeze()
+    assert float(every.events) > 100.0
+    for k in (0, 20, 31, 32, 39):
+        one = {"M": np.eye(1), "K": stiffness[k : k + 1, np.newaxis], "C": np.zeros((1, 1))}
+        contact = fm.Contact("fixed-wall", 1, ratio=ratio[k])
+        alone = fm.history(fm.System(matrices=one, contacts=[contact], **scales), record, beta=0.3).squeeze()
+        assert float(every.stops[k]) == float(alone.stops)
+        assert float(every.turns[k]) == float(alone.turns)
+        assert float(every.sliding_distance[k]) == pytest.approx(float(alone.sliding_distance), abs=1e-11)
+        assert float(every.residual[k]) == pytest.approx(float(alone.residual), abs=1e-11)

@@ -71,9 +71,6 @@ _SAME = 1e-12
 #: A velocity at the start within this share of its terms is rest.
 _AT_REST = 1e-12
 
-#: Row of the scratch for the senses before an event.
-_SENSE = 7
-
 
 class Memory(NamedTuple):
     """Memory of a motion."""
@@ -83,6 +80,7 @@ class Memory(NamedTuple):
     motion: Motion
     tables: Tables
     box: np.ndarray  # (BOX_ROWS, N) scratch of `settle`
+    before: np.ndarray  # (N,) senses before an event
     counts: np.ndarray  # (COUNT_ROWS, N) counters
     places: Places
     rests: np.ndarray  # (N,) bool: springs under varying normal loads that are at rest, see `springs`
@@ -96,8 +94,8 @@ def make_memory(problem, still, watched, terms, lengths):
     contacts, row = problem.spring.size, make_row(problem)
     return Memory(
         row, row.loads, make_motion(problem), tables, np.zeros((BOX_ROWS, contacts)),
-        np.zeros((COUNT_ROWS, contacts)), make_places(problem), np.zeros(contacts, np.bool_),
-        np.full(problem.squares.size, np.inf),
+        np.zeros(contacts), np.zeros((COUNT_ROWS, contacts)), make_places(problem),
+        np.zeros(contacts, np.bool_), np.full(problem.squares.size, np.inf),
     )  # fmt: skip
 
 
@@ -177,7 +175,7 @@ def _cross(problem, friction, memory, ties, kept, jumped, listed):
     h = row.numbers[H]
     x = 0.0
     motion.clock[0] = math.nan
-    before = motion.scratch[_SENSE]
+    before = memory.before
     show, opens = listed and jumped, has_varying_spring(problem)
     for _ in range(MOST_EVENTS):
         rest = 1.0 - x
@@ -243,7 +241,7 @@ def set_length(memory, problem, h):
 def _jump(problem, friction, memory, ties, kept):
     """Decide the pattern where the load jumps; False if the contacts do not determine their forces."""
     motion = memory.motion
-    before = motion.scratch[_SENSE]
+    before = memory.before
     for j in range(motion.sense.size):
         before[j] = motion.sense[j]
     if not _settle(problem, friction, memory):
@@ -305,7 +303,7 @@ def _note_leaps(course, k, leaps):
 def _begin_at_walls(problem, friction, memory, course, kept):
     """Let springs follow what the load displaces at once where the record begins."""
     row, motion, leaps = memory.row, memory.motion, memory.box[0]
-    before = motion.scratch[_SENSE]
+    before = memory.before
     for j in range(motion.sense.size):
         before[j] = motion.sense[j]
     _note_leaps(course, 0, leaps)
@@ -341,7 +339,7 @@ def begin(memory, problem, friction, course, start, senses, kept):
         return False
     if senses[0] == BY_LAW and not _settle(problem, friction, memory):
         return False
-    before = motion.scratch[_SENSE]
+    before = memory.before
     before[:] = 1.0
     note_places(problem, row, motion, before, 0.0, course.times[0], memory.places)
     if senses[0] == BY_LAW and bends(course.direct):
@@ -386,7 +384,7 @@ def follow_part(memory, problem, friction, course, kept, part, jump, listed):
         if jumped:
             _note_leaps(course, jump, leaps)
         changed |= begin_springs(
-            problem, row, friction, motion, kept, motion.scratch[_SENSE], course, memory.rests, leaps
+            problem, row, friction, motion, kept, memory.before, course, memory.rests, leaps
         )
     if jumped and not _jump(problem, friction, memory, course.ties, kept):
         return UNDETERMINED

@@ -40,7 +40,12 @@ def _both(name: str) -> tuple:
 
 @by_class(*_both("begin"))
 def _begin(memory, problem, friction, course, start, senses, kept):
-    """Set the state and the pattern at the start; False if the contacts do not determine their forces."""
+    """Set the state and the pattern at the start; False if the contacts do not determine their forces.
+
+    Parameters
+    ----------
+    memory, problem, friction, course, start, senses, kept : see `follow_record`
+    """
 
 
 @by_class(*_both("keep_start"))

@@ -25,7 +25,7 @@ def triangle(ratios, **further):
 
 
 def test_curves_are_those_of_the_cells_of_a_map():
-    """Sliding, stick-slip and stuck cells; what is not known is NaN in both."""
+    """Sliding, stick-slip and stuck cells; unknown numbers are NaN in both."""
     system = triangle([1.0, 0.6, 0.8])
     found = fm.curves(system, R, BETA, quantities=QUANTITIES, harmonics=3)
     names = [

@@ -26,6 +26,7 @@ from frictionmap.files.designs import describe_design
 from frictionmap.files.json_schema import map_schema
 from frictionmap.files.reading import read, standard_form
 from frictionmap.files.summary import describe_file
+from frictionmap.pictures.maps.working_point import WORKING_POINT
 from frictionmap.pictures.palette import LINES
 from frictionmap.units.scales import scales_of
 
@@ -347,5 +348,5 @@ def test_a_curve_of_zeros_is_drawn(answers):
 def test_a_working_point_is_drawn_where_it_is(answers):
     ds = read(answers["margin"])
     (ax,) = fm.plot_design(ds)
-    marks = [line.get_xydata() for line in ax.lines if line.get_marker() == "o"]
+    marks = [line.get_xydata() for line in ax.lines if line.get_marker() == WORKING_POINT["marker"]]
     np.testing.assert_allclose(marks[0], [[ds.at_r.item(), ds.beta.item()]])

@@ -191,6 +191,8 @@ ENTRIES = {
     "system.matrices.M", "system.matrices.K", "system.matrices.C", "system.matrices.dofs",
     *(f"system.sectors.{name}" for name in ("mass", "stiffness", "coupling", "coupling[].stiffness")),
     *(f"system.modes.{key}" for key in ("shapes", "residual", "compliance", "modal_masses")),
+    *(f"system.modes.{key}" for key in ("participation", "influence", "base_residual")),
+    *(f"history.start.{key}" for key in ("q", "q_rate")),
 }  # fmt: skip
 
 #: Numbers of beams, plates and modes, see `structures`.

@@ -316,6 +316,8 @@ def _begin_at_walls(problem, friction, memory, course, kept):
 def begin(memory, problem, friction, course, start, senses, kept):
     """Set the state and the pattern at the start; False if the contacts do not determine their forces.
 
+    Parameters
+    ----------
     memory, problem, friction, course, start, senses, kept : see `motions_in_time.follow_record`
     """
     row, motion = memory.row, memory.motion

@@ -289,10 +289,12 @@ def _go_on(problem, cell, memory, senses):
 
 
 @kernel
-def begin(memory, problem, cell, course, start, senses, _):
+def begin(memory, problem, cell, course, start, senses, kept):
     """Set the state and the pattern at the start; False if the contacts do not determine their forces.
 
-    memory, problem, cell, course, start, senses : see `motions_in_time.follow_record`
+    Parameters
+    ----------
+    memory, problem, cell, course, start, senses, kept : see `motions_in_time.follow_record`
     """
     motion, row = memory.motion, memory.row
     parts = parts_of(memory.rate[0], course.steps[0])

@@ -40,9 +40,7 @@ def test_a_range_of_friction_that_ends_before_the_threshold():
     ds = fm.design.least_peak(ONE, BAND, beta=[0.3, 0.9])
     assert (ds.beta.item(), str(ds.kind.values)) == (0.9, "at the bound")
     assert ds.peak.values[0] > 0.1
-    with pytest.raises(
-        fm.InputError, match=r"begin below beta = 1, at .* is 0 .*; got beta = 2$"
-    ):
+    with pytest.raises(fm.InputError, match=r"begin below beta = 1, at .* is 0 .*; got beta = 2$"):
         fm.design.least_peak(ONE, BAND, beta=[2.0, 3.0])
 
 

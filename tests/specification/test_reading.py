@@ -85,7 +85,7 @@ def test_every_variable_is_in_the_examples(datasets):
         "no_stop_begin", "no_stop_end", "wall_velocity_lim", "y", "load", "event_contact", "contact",
         "contact_name", "point_name", "beta_slope_lim", "beta_slope_certificate", "wall_speed_lim",
         "segment", "spring", "spring_name", "normal_force", "open", "spring_force", "event_open",
-        "self_locking", "friction_lim", "friction_lim_kind", "friction_on_mass",
+        "self_locking", "friction_lim", "friction_lim_kind", "friction_on_mass", "elongation",
     }  # fmt: skip
     of_contacts |= {
         "border_r",

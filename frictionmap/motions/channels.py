@@ -105,7 +105,7 @@ def _iota(system: System, general: ContactSystem) -> np.ndarray:
         return np.ones(system.n)
     if points.participation is None:
         raise InputError(
-            "cannot follow motions of the base of a structure given by modes without participation, which is "
+            "cannot follow motions of the base of a structure given by modes without participation: it is "
             "their load by a base that moves; give participation, or a beam or plate with a support"
         )
     return points.participation
@@ -121,7 +121,7 @@ def _under_base(system: System, general: ContactSystem, acceleration: Pieces) ->
         raise InputError(
             "cannot use",
             "residual",
-            "under a motion of the base without base_residual, what this load displaces beside the modes; "
+            "under a motion of the base without base_residual: this load displaces points beside the modes; "
             "give base_residual, or omit residual",
         )
     place = -points.base_residual

@@ -77,8 +77,8 @@ def structure_of(system: System, opens: bool = False) -> Structure:
         raise InputError(
             "cannot use",
             "residual",
-            "in motions in time with several contacts that it couples, whose forces would jump together with "
-            "the load; use with_residual = false of a beam or plate, or omit residual",
+            "in motions in time with several contacts that it couples: their forces would jump together "
+            "with the load; use with_residual = false of a beam or plate, or omit residual",
         )
     if any(group.first.nu for group in general.groups):
         raise InputError(

@@ -139,7 +139,7 @@ class Modes:
             raise InputError(
                 "cannot use",
                 "participation",
-                "with complex shapes, whose signs change where they are made real; give real shapes",
+                "with complex shapes: their signs change where they are made real; give real shapes",
             )
         shapes = self._real(given) if given.dtype.kind == "c" else given.astype(float)
         if not shapes.any(axis=1).all():

@@ -21,7 +21,7 @@ history            motions in time under records
 no_load            motions on a belt without a load: all cycles of one mass; rides of structures
 phases             normal forces that move, separation, piecewise linear springs
 banks              banks of elastic elements, each bank one contact
-motions_in_time    motions under records and after them, from interval to interval, of both engines
+motions_in_time    motions under records and after them, from interval to interval, of all engines
 engine             solver of cells: recurrence, periodic orbits, outputs, stability, coexistence
 =================  =====================================================================================
 """

@@ -1,9 +1,12 @@
-"""Motions under records and after them, from interval to interval, of both engines.
+"""Motions under records and after them, from interval to interval, of all engines.
 
 An engine is chosen by the class of its memory (`by_class`): `history.motion` follows contacts under given
-normal loads, `phases.under_record` contacts that open and piecewise linear springs.
+normal loads, `phases.under_record` contacts that open and piecewise linear springs, and `banks.under_record`
+banks of elastic elements.
 """
 
+from .banks import under_record as banks
+from .banks.kept import Memory as BankMemory
 from .compiler import by_class, entry, kernel
 from .compiler.packed import packed
 from .general.record import clear_record
@@ -34,11 +37,12 @@ NEEDS_BED = -1
 DONE, SINCE = 0, 1
 
 
-def _both(name: str) -> tuple:
-    return (general.Memory, getattr(general, name)), (PhaseMemory, getattr(phases, name))
+def _each(name: str) -> tuple:
+    memories = ((general.Memory, general), (PhaseMemory, phases), (BankMemory, banks))
+    return tuple((memory, getattr(module, name)) for memory, module in memories)
 
 
-@by_class(*_both("begin"))
+@by_class(*_each("begin"))
 def _begin(memory, problem, friction, course, start, senses, kept):
     """Set the state and the pattern at the start; False if the contacts do not determine their forces.
 
@@ -48,22 +52,22 @@ def _begin(memory, problem, friction, course, start, senses, kept):
     """
 
 
-@by_class(*_both("keep_start"))
+@by_class(*_each("keep_start"))
 def _keep_start(memory, problem, friction, kept, shown):
     """Keep what there is where the motion begins, and the state there if it is `shown`."""
 
 
-@by_class(*_both("rate_of"))
+@by_class(*_each("rate_of"))
 def _rate_of(memory, problem, friction):
     """Bound on the rate of the fastest part of the motion."""
 
 
-@by_class(*_both("set_length"))
+@by_class(*_each("set_length"))
 def _set_length(memory, problem, length):
     """Change the length of parts of intervals, with what is measured in it."""
 
 
-@by_class(*_both("follow_part"))
+@by_class(*_each("follow_part"))
 def _follow_part(memory, problem, friction, course, kept, part, jump, listed):
     """Follow the motion through an equal part of an interval: RESOLVED, TOO_MANY_EVENTS or UNDETERMINED.
 
@@ -76,22 +80,22 @@ def _follow_part(memory, problem, friction, course, kept, part, jump, listed):
     """
 
 
-@by_class(*_both("keep_sample"))
+@by_class(*_each("keep_sample"))
 def _keep_sample(memory, problem, kept):
     """Keep the state at the end of an interval."""
 
 
-@by_class((general.Memory, general.sleep_of), (PhaseMemory, rest.sleep_of))
-def _sleep_of(memory, problem, friction, bed):
+@by_class((general.Memory, general.sleep_of), (PhaseMemory, rest.sleep_of), (BankMemory, banks.sleep_of))
+def _sleep_of(memory, problem, friction, kept, bed):
     """Whether no contact ever moves again under no load: AWAKE, ASLEEP or ELSEWHERE."""
 
 
-@by_class(*_both("creeps"))
+@by_class(*_each("creeps"))
 def _creeps(memory, problem):
     """Whether a contact slides so slowly that rounding error hides it."""
 
 
-@by_class(*_both("end"))
+@by_class(*_each("end"))
 def _end(memory, problem, kept):
     """Leave the velocities q' in the state, and keep the forces at the end."""
 
@@ -134,7 +138,7 @@ def _follow(memory, problem, friction, course, kept, bed, limits, state):
         done = state[DONE]
         k = min(done, last)
         if k == last and state[SINCE] < 0:
-            sleep = _sleep_of(memory, problem, friction, bed)
+            sleep = _sleep_of(memory, problem, friction, kept, bed)
             if sleep == ELSEWHERE:
                 return NEEDS_BED
             if sleep == ASLEEP:
@@ -161,7 +165,7 @@ def follow_record(problem, friction, memory, course, start, senses, kept, bed, l
     ----------
     problem : Problem of the engine; of `general` with r = [1.0], no harmonics, and a first rate that bounds
         that of free motion
-    friction : Friction, or Cell of `phases`
+    friction : Friction, or Cell of `phases` or `banks`
     memory : Memory of the engine; its counters and the state are those at the end
     course : Course
     start : (3, ...) modes, their velocities q', forces of springs
@@ -183,9 +187,6 @@ def follow_record(problem, friction, memory, course, start, senses, kept, bed, l
         kept.clock[0] = course.times[0]
         if not _begin(memory, problem, friction, course, start, senses, kept):
             return UNDETERMINED
-        for j in range(memory.motion.sense.size):
-            if memory.motion.sense[j] != 0:
-                kept.first[0] = course.times[0]
         _keep_start(memory, problem, friction, kept, limits[EVERY] > 0)
     status = _follow(memory, problem, friction, course, kept, bed, limits, state)
     if status != NEEDS_BED:

@@ -6,7 +6,6 @@ import numpy as np
 
 from .._kernels.banks.kept import Memory
 from .._kernels.banks.problem import Cell, make_motion
-from .._kernels.banks.under_record import follow_record
 from .._kernels.general.counts import COUNT_ROWS, STUCK
 from .._kernels.general.problem import WIDTH
 from .._kernels.general.record import make_record
@@ -18,16 +17,16 @@ from ..banks.arrays import problem_of, row_of
 from ..banks.given import banks_of
 from ..banks.system import BankSystem
 from ..phases.arrays import Modal
-from .cells import Asked, Elements, Found, Motions, room_for, starting
+from .cells import Asked, Elements, Found, Kernels, Motions, Ran
 from .channels import Drive
 from .starts import Start
 from .structure import Structure
 
 
-def _trimmed(terms: np.ndarray) -> np.ndarray:
-    """Polynomials (K, D, terms) without the last terms that none of them has."""
+def _used(terms: np.ndarray) -> int:
+    """How many terms polynomials (K, D, terms) have without the last ones that are 0 in all, at least 2."""
     used = np.flatnonzero(terms.any(axis=(0, 1)))
-    return np.ascontiguousarray(terms[:, :, : max(2, int(used.max(initial=0)) + 1)])
+    return max(2, int(used.max(initial=0)) + 1)
 
 
 class BankMotions(Motions):
@@ -58,7 +57,7 @@ class BankMotions(Motions):
             make_motion(banks, 0, BANK_ROWS, 0), self.row._replace(size=size), cell, stretch.copy(),
             self.problem.push, self.drive.base.any(axis=0).astype(float), np.array([terms]), np.ones(2),
             np.zeros(1, np.int64), np.zeros((channels, WIDTH)), np.zeros((channels, WIDTH)),
-            np.zeros(banks.moved.size, np.int64), np.zeros((8, WIDTH)),
+            np.zeros(banks.moved.size, np.int64), np.zeros((8, WIDTH)), np.full(banks.squares.size, np.inf),
         )  # fmt: skip
 
     def _kept(self, limits: np.ndarray, scale: float, room: np.ndarray) -> Kept:
@@ -73,32 +72,23 @@ class BankMotions(Motions):
 
     def at(self, beta: float, mu: float, scale: float, asked: Asked, events: bool) -> Found:
         """Follow one motion; see `Motions.follow`."""
-        steps, limits = self.limits_of(asked, events and asked.every > 0)
-        terms = _trimmed(self.terms_of(scale, steps))
-        drive = self.drive
-        course = Course(terms, steps, drive.times, drive.jumps, self.ties, drive.direct)
-        goes_on = terms[-1, :, 1:].any(axis=1) & self.drive.base.any(axis=0)
-        bed = self.held.bed._replace(active=self.held.bed.active * int(not goes_on.any()))
-        room, start = room_for(asked, steps, limits), starting(self.structure, asked.start)
+        moves_on = self.drive.base.any(axis=0) & (scale * self.drive.terms[-1, :, 1:]).any(axis=1)
+        bed = self.held.bed._replace(active=self.held.bed.active * int(not moves_on.any()))
         most = self._limits(beta)
         cell = Cell(most, np.zeros(self.banks.left.size))
         begin = np.zeros(most.size) if asked.start.stretch is None else asked.start.stretch
         begin = np.clip(begin, -most, most)
-        while True:
-            memory = self._memory(cell, begin, terms.shape[2], scale)
-            kept = self._kept(most, scale, room)
-            code, done, asleep = follow_record(self.banks, memory, course, start, kept, bed, limits)
-            if (kept.counts <= room).all():
-                break
-            room = np.maximum(room, kept.counts)
-        end, slept = (self.time_after(k, steps) for k in (done, asleep))
-        found = self._ended(code, memory, kept, np.array((begin, memory.stretch)))
-        found = found._replace(scale=scale, end=end, asleep=slept if asleep >= 0 else np.nan)
+
+        def memory(course: Course, room: np.ndarray) -> tuple[Memory, Kept]:
+            return self._memory(cell, begin, _used(course.pieces), scale), self._kept(most, scale, room)
+
+        ran = self.run(asked, scale, events, Kernels(self.banks, cell, memory, lambda _: bed))
+        found = self._ended(ran, scale, np.array((begin, ran.memory.stretch)))
         return found._replace(place=self._place(found))
 
-    def _ended(self, code: int, memory: Memory, kept: Kept, stretch: np.ndarray) -> Found:
-        """One motion without its times and its place of rest."""
-        contacts, motion = self.banks.moved.size, memory.motion
+    def _ended(self, ran: Ran, scale: float, stretch: np.ndarray) -> Found:
+        """One motion without its place of rest."""
+        contacts, motion, kept = self.banks.moved.size, ran.memory.motion, ran.kept
         counts = np.zeros((COUNT_ROWS, contacts))
         counts[STUCK] = motion.counts[HELD]
         own, stored, lost = np.split(kept.states, (-2 * contacts, -contacts), axis=1)
@@ -107,7 +97,10 @@ class BankMotions(Motions):
         elements = Elements(stretch, energy, stored[:there].T, lost[:there].T)
         state = np.stack((motion.now.q, motion.now.p))
         kept = kept._replace(states=own)
-        return Found(code, 1.0, kept, counts, state, memory.before, np.nan, np.nan, None, None, elements)
+        sense = ran.memory.before
+        return Found(
+            ran.status, scale, kept, counts, state, sense, ran.end, ran.asleep, None, None, elements
+        )  # fmt: skip
 
     def energy(self, q: np.ndarray, p: np.ndarray, f: np.ndarray, one: Found, at: int | slice) -> np.ndarray:
         """Energy of masses and springs without those of the elements."""

@@ -17,6 +17,6 @@ steady        the steady motion of one cell
 trail         the steady motions of the last cells, which the next one begins from
 fill          cells of a map, and the steps of one motion
 kept          peaks, works, slips, events and samples of a motion under a record
-under_record  the motion under a record, and after it
+under_record  the motion under a record: its start, an interval, its end
 ============  ====================================================================================
 """

@@ -59,6 +59,7 @@ class Memory(NamedTuple):
     present: np.ndarray  # (D, WIDTH) the same over the present step
     before: np.ndarray  # (N,) int: senses before an event
     scratch: np.ndarray  # (8, WIDTH)
+    last: np.ndarray  # (m,) modes at the last sample, see `under_record.creeps`
 
 
 @kernel

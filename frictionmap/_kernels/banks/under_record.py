@@ -1,16 +1,14 @@
-"""The motion under a record, whose channels are polynomials over every interval, and after it.
+"""The motion of banks under a record: its start, an interval, its end.
 
 The stacks of turning points are the state of the banks: what slips next follows from them in every interval.
 """
 
 import math
 
-from ..compiler import entry, kernel
-from ..compiler.packed import packed
+from ..compiler import kernel
 from ..general.problem import LONG
-from ..general.record import clear_record
 from ..general.row import put_part
-from ..history.course import AFTER, CREEPING, EVERY, LISTED, RESOLVED, RINGING, TO_REST, TOO_MANY_EVENTS
+from ..history.course import ASLEEP, AWAKE, RESOLVED, TOO_MANY_EVENTS, any_slides, slides_on_slowly
 from ..history.kept import END
 from ..phases.problem import FIRST, LAST, STUCK
 from .fill import put_friction
@@ -44,12 +42,6 @@ _AT_LIMIT = 1.0 - 1e-12
 
 #: A velocity at the start within this share of its terms is rest.
 _AT_REST = 1e-12
-
-#: A slip is over for practical purposes below this speed, relative to displacements.
-_CREEP = 1e-15
-
-#: An acceleration above this, relative to displacements, is that of a turn, not of a creep.
-_TURNS = 1e-8
 
 
 @kernel
@@ -115,18 +107,31 @@ def _pass(memory, problem, cell, j, what, kept, listed):
 
 
 @kernel
-def follow_part(memory, problem, cell, kept, jump, listed):
+def rate_of(memory, problem, cell):
+    """Return 0: steps have lengths of their own, and an interval is one part."""
+    return 0.0
+
+
+@kernel
+def set_length(memory, problem, length):
+    """Set the length of an interval."""
+    memory.lengths[OF_INTERVAL] = length
+
+
+@kernel
+def follow_part(memory, problem, cell, course, kept, part, jump, listed):
     """Follow the motion through the interval that begins at `kept.clock`; RESOLVED or TOO_MANY_EVENTS.
 
     Parameters
     ----------
-    memory, problem, cell, kept : see `follow_record`; the polynomials are in `memory.channels`
-    jump : whether the load jumps where the interval begins
+    memory, problem, cell, course, kept : see `motions_in_time.follow_record`
+    part : 0; the polynomials are in `memory.channels`
+    jump : the interval, if the load jumps where it begins, else -1
     listed : whether the states at events are kept
     """
     motion, whole, begin = memory.motion, memory.lengths[OF_INTERVAL], kept.clock[0]
     x, immediate = 0.0, 0
-    if jump and listed:
+    if jump >= 0 and listed:
         _show(memory, problem, cell, kept)
     for _ in range(MOST_STEPS):
         if x >= 1.0:
@@ -174,9 +179,17 @@ def _put_sense(memory, problem, j):
 
 
 @kernel
-def begin(memory, problem, cell, start):
-    """Set the state at the start, with the channels and the length of the first interval."""
+def begin(memory, problem, cell, course, start, senses, kept):
+    """Set the state at the start, with the channels and the length of the first interval; True.
+
+    Parameters
+    ----------
+    memory, problem, cell, course, start, senses, kept : see `motions_in_time.follow_record`
+    """
     motion, now = memory.motion, memory.motion.now
+    put_friction(problem, cell.limit, cell)
+    set_length(memory, problem, course.steps[0])
+    put_part(memory.channels, course.pieces[0], 0.0, 1)
     motion.tangent.count[0] = 0
     for i in range(problem.squares.size):
         now.q[i], now.p[i] = start[0, i], start[1, i]
@@ -196,14 +209,14 @@ def begin(memory, problem, cell, start):
     for j in range(problem.moved.size):
         _put_sense(memory, problem, j)
         pass_thresholds(problem, cell, motion, j, motion.z[j, 0])
+    return True
 
 
 @kernel
 def keep_start(memory, problem, cell, kept, shown):
     """Note a slip at the start, and keep the state there if it is `shown`."""
-    for j in range(problem.moved.size):
-        if memory.motion.now.level[j] > 0:
-            kept.first[0] = kept.clock[0]
+    if any_slides(memory.motion.now.level):
+        kept.first[0] = kept.clock[0]
     if shown:
         _show(memory, problem, cell, kept)
 
@@ -218,10 +231,11 @@ def _product(units, weights):
 
 
 @kernel
-def _is_asleep(memory, problem, cell, units, bed):
-    """Whether no element ever slips again: see `history.asleep`."""
+def sleep_of(memory, problem, cell, kept, bed):
+    """Whether no element ever slips again, see `history.asleep`: AWAKE or ASLEEP."""
     if bed.active[0] == 0:
-        return False
+        return AWAKE
+    units = kept.units[END]
     motion, forces, square = memory.motion, 2 * problem.squares.size, 0.0
     for v in range(bed.vibration.shape[0]):
         part = _product(units, bed.vibration[v])
@@ -233,106 +247,30 @@ def _is_asleep(memory, problem, cell, units, bed):
         reach = math.sqrt(square) * bed.gains[j] / stiffness
         for i in range(problem.first[j], problem.first[j + 1]):
             if abs(rest - slider(problem, cell, motion, j, i, z)) + reach > cell.limit[i]:
-                return False
-    return True
+                return AWAKE
+    return ASLEEP
 
 
 @kernel
-def _creeps(memory, problem):
+def keep_sample(memory, problem, kept):
+    """Keep the state at the end of an interval."""
+    store_state(memory, problem, kept)
+
+
+@kernel
+def creeps(memory, problem):
     """Whether elements slip so slowly that rounding error hides it."""
-    now, slips, speed, rate, size = memory.motion.now, False, 0.0, 0.0, memory.row.size
-    for j in range(problem.moved.size):
-        slips = slips or now.level[j] != 0
-    for i in range(problem.squares.size):
-        speed, size = max(speed, abs(now.p[i])), max(size, abs(now.q[i]))
-        rate = max(rate, abs(memory.motion.rate[i]))
-    # at a turn there is an acceleration
-    return slips and speed <= _CREEP * size and rate <= _TURNS * size
+    now = memory.motion.now
+    return slides_on_slowly(now.level, now.q, now.p, memory.last, memory.row.size)
 
 
 @kernel
-def _put_interval(memory, course, done, kept):
-    """Set the channels, the length and the beginning of the next interval."""
-    k = min(done, course.steps.size - 1)
-    memory.lengths[OF_INTERVAL] = course.steps[k]
-    put_part(memory.channels, course.pieces[k], float(done - k), 1)
-    kept.clock[0] = course.times[k] + (done - k) * course.steps[k]
-
-
-@kernel
-def _follow(memory, problem, cell, course, kept, bed, limits):
-    """Follow the motion from its start.
-
-    Parameters
-    ----------
-    memory, problem, cell, course, kept, bed, limits : see `follow_record`
-
-    Returns
-    -------
-    (status, done, asleep) : see `follow_record`
-    """
-    last, to_rest = course.steps.size - 1, limits[TO_REST] != 0
-    done, asleep = 0, -1
-    while True:
-        k = min(done, last)
-        if k == last and asleep < 0 and _is_asleep(memory, problem, cell, kept.units[END], bed):
-            asleep = done
-        if asleep >= 0 and to_rest:
-            return RESOLVED, done, asleep
-        if done >= last + limits[AFTER]:
-            return (RINGING if to_rest else RESOLVED), done, asleep
-        _put_interval(memory, course, done, kept)
-        jump = course.jumps[k] and done == k and done > 0
-        code = follow_part(memory, problem, cell, kept, jump, limits[LISTED] != 0)
-        if code != RESOLVED:
-            return code, done, asleep
-        done += 1
-        if limits[EVERY] > 0 and (done % limits[EVERY] == 0 or done == last):
-            store_state(memory, problem, kept)
-        if k == last and to_rest and _creeps(memory, problem):
-            return CREEPING, done, asleep
-
-
-@kernel
-def end(memory, problem, cell, kept):
+def end(memory, problem, kept):
     """Leave the elongations, senses and forces at the end."""
-    motion = memory.motion
+    motion, cell = memory.motion, memory.cell
     for j in range(problem.moved.size):
         kept.forces[j] = kept.units[END, 2 * problem.squares.size + j]
         memory.before[j] = sense_of(motion.now, j)
         z = displacement(problem, motion, j)
         for i in range(problem.first[j], problem.first[j + 1]):
             memory.stretch[i] = z - slider(problem, cell, motion, j, i, z)
-
-
-@entry
-def follow_record(problem, memory, course, start, kept, bed, limits):
-    """Follow the motion under a record and after it.
-
-    Parameters
-    ----------
-    problem : Problem
-    memory : Memory with the limits of the elements, and their elongations at the start; the state and the
-        elongations are those at the end
-    course : `history.course.Course`
-    start : (3, ...) modes, their velocities q'
-    kept : `history.kept.Kept`, with states as of `kept`
-    bed : `history.asleep.Bed` with all elements held
-    limits : (4,) int, see `history.course`
-
-    Returns
-    -------
-    (status, done, asleep) : see `history.course`; intervals followed; after how many of them no element slips
-        again, -1 if this is not proved
-    """
-    problem, memory, course = packed(problem), packed(memory), packed(course)
-    kept, bed = packed(kept), packed(bed)
-    cell = memory.cell
-    clear_record(kept.record)
-    put_friction(problem, cell.limit, cell)
-    _put_interval(memory, course, 0, kept)
-    begin(memory, problem, cell, start)
-    keep_start(memory, problem, cell, kept, limits[EVERY] > 0)
-    status, done, asleep = _follow(memory, problem, cell, course, kept, bed, limits)
-    end(memory, problem, cell, kept)
-    return status, done, asleep

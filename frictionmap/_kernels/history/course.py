@@ -50,23 +50,29 @@ def parts_of(rate, step):
 
 
 @kernel
+def any_slides(sense):
+    """Whether any contact slides; sense : (N,), or levels of banks."""
+    found = False
+    for j in range(sense.size):
+        found = found or sense[j] != 0
+    return found
+
+
+@kernel
 def slides_on_slowly(sense, place, velocity, last, size):
     """Whether a contact slides so slowly that rounding error hides it.
 
     Parameters
     ----------
-    sense : (N,) of the contacts
+    sense : see `any_slides`
     place, velocity : of the structure
     last : (m,) its place at the last sample; replaced by the present one
     size : displacement that the load can be expected to cause
     """
-    slides = False
-    for j in range(sense.size):
-        slides = slides or sense[j] != 0
     speed, moved = 0.0, 0.0
     for m in range(last.size):
         speed = max(speed, abs(velocity[m]))
         size = max(size, abs(place[m]))
         moved = max(moved, abs(place[m] - last[m]))
         last[m] = place[m]
-    return slides and speed <= _CREEP * size and moved <= _MOVED * size
+    return any_slides(sense) and speed <= _CREEP * size and moved <= _MOVED * size

@@ -45,6 +45,7 @@ from .course import (
     RESOLVED,
     TOO_MANY_EVENTS,
     UNDETERMINED,
+    any_slides,
     parts_of,
     slides_on_slowly,
 )
@@ -352,6 +353,8 @@ def begin(memory, problem, friction, course, start, senses, kept):
 @kernel
 def keep_start(memory, problem, friction, kept, shown):
     """Keep the forces where the motion begins, and the state there if it is `shown`."""
+    if any_slides(memory.motion.sense):
+        kept.first[0] = kept.clock[0]
     row, motion = memory.row, memory.motion
     for j in range(motion.sense.size):
         kept.forces[j] = motion.state[F, j]
@@ -398,7 +401,7 @@ def follow_part(memory, problem, friction, course, kept, part, jump, listed):
 
 
 @kernel
-def sleep_of(memory, problem, friction, bed):
+def sleep_of(memory, problem, friction, kept, bed):
     """Whether no contact ever moves again under no load: AWAKE or ASLEEP."""
     return ASLEEP if is_asleep(memory.row, friction, memory.motion, bed) else AWAKE
 

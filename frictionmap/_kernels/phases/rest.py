@@ -40,7 +40,7 @@ def _product(memory, rows, at):
 
 
 @kernel
-def sleep_of(memory, problem, cell, bed):
+def sleep_of(memory, problem, cell, kept, bed):
     """Whether no contact ever moves, opens or closes again, and no spring passes a knot: see AWAKE."""
     motion, contacts = memory.motion, problem.law.size
     for j in range(contacts):

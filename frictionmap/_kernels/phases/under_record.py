@@ -15,6 +15,7 @@ from ..history.course import (
     RESOLVED,
     TOO_MANY_EVENTS,
     UNDETERMINED,
+    any_slides,
     parts_of,
     slides_on_slowly,
 )
@@ -321,6 +322,8 @@ def begin(memory, problem, cell, course, start, senses, kept):
 @kernel
 def keep_start(memory, problem, cell, kept, shown):
     """Keep the state where the motion begins, if it is `shown`."""
+    if any_slides(memory.motion.sense):
+        kept.first[0] = kept.clock[0]
     if shown:
         begin_terms(problem, memory.row, cell, memory.motion, TERMS)
         put_units(problem, cell, memory, kept.units[END], 0.0)

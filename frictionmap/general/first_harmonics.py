@@ -13,7 +13,10 @@ from .boundaries import friction_lines, rest_states
 from .held import held_displacements, least_static_friction, stick_scales
 from .observed import has_residual
 from .problem import general_of, problem_of
-from .recorded import recorded_state
+from .recorded import make_memory, recorded_state
+
+#: Steps for which there is room at first.
+_STEPS = 64
 
 
 def steady_phasors(system: System, r: np.ndarray, beta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -62,11 +65,12 @@ def _follow(
     kinetic, _ = friction_lines(system, np.ones(1))
     starts, solver = rest_states(system, modal, at), Solver()
     no_masses = np.empty((0, modal.squares.size))  # their displacements are not recorded: modes are enough
+    memory = make_memory(problem, no_masses, _STEPS)
     for k in chosen:
         force = kinetic @ np.array([beta[k], 1.0])
         state, _, _, counts, record, h, steps = recorded_state(
             problem, index[k], Friction(force, force), starts[index[k]], (solver.cycles, solver.tolerance),
-            no_masses, settled=False,
+            no_masses, memory, settled=False,
         )  # fmt: skip
         if state.status != REPEATS:
             continue

@@ -1,21 +1,25 @@
 """One mass on a wall under a load of several harmonics: what measured records are compared with."""
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
+from .._kernels.compiler.lending import Memories, made
 from .._kernels.general.counts import MOVED, NEAREST_STOP, SLIPS, STOPS, STUCK
 from .._kernels.general.problem import TURN, Problem
+from .._kernels.general.row import intervals_of
 from .._kernels.general.samples import fill_samples
 from .._kernels.general.series import Friction
 from .._kernels.general.steady import AVERAGED, REPEATS
-from .recorded import recorded_state
+from .recorded import Memory, make_memory, recorded_state
 
 _TOLERANCE = 1e-12
 
 _ONE = np.ones((1, 1))
 _NONE = np.zeros((1, 1))
+_NO_MASSES = np.empty((0, 1))
 
 #: Steps beyond those between events that are kept at first.
 _EVENTS = 64
@@ -49,6 +53,23 @@ def _problem(r: float, zeta: float, load: np.ndarray, spring: float) -> Problem:
     )  # fmt: skip
 
 
+@lru_cache(maxsize=64)
+def _memories(harmonics: int, elastic: bool, intervals: int, most: int) -> Memories[Memory]:
+    """Memory for problems of one size: a fit finds thousands of motions, each quicker than its allocation."""
+    alike = _problem(1.0, 0.0, np.ones(harmonics + 1, dtype=complex), float(elastic))
+    rate = (intervals - 0.5) * TURN / math.pi
+    return Memories(lambda: make_memory(alike._replace(rates=np.array([rate])), _NO_MASSES, most))
+
+
+def _memories_for(problem: Problem) -> Memories[Memory]:
+    """Memory with room for the steps between events, and some more."""
+    rate = float(problem.rates[0])
+    steps = int(4.0 * math.pi * rate / TURN) + _EVENTS
+    return _memories(
+        problem.orders.size, bool(problem.spring[0]), made(intervals_of, rate), 1 << (steps - 1).bit_length()
+    )
+
+
 def steady_motion(
     r: float, zeta: float, friction: float, mu: float, load: np.ndarray, start: tuple[float, float],
     phases: np.ndarray, cycles: int, spring: float = 0.0,
@@ -69,13 +90,13 @@ def steady_motion(
     offset = float(load[0].real)
     state = np.array([[start[0] - offset], [start[1]]])
     forces = Friction(np.array([friction]), np.array([mu * friction]))
-    most = int(4.0 * math.pi * problem.rates[0] / TURN) + _EVENTS
-    found, halves, _, counts, record, h, steps = recorded_state(
-        problem, 0, forces, state, (cycles, _TOLERANCE), np.empty((0, 1)), most, False
-    )
-    period = halves // 2
     places = np.empty(phases.size)
-    fill_samples(record.steps, record.patterns, steps, 0, h, period, phases, places)
+    with _memories_for(problem).one() as memory:
+        found, halves, _, counts, record, h, steps = recorded_state(
+            problem, 0, forces, state, (cycles, _TOLERANCE), _NO_MASSES, memory, False
+        )
+        period, counts = halves // 2, counts.copy()
+        fill_samples(record.steps, record.patterns, steps, 0, h, period, phases, places)
     counted = found.halves // 2 if found.status == AVERAGED else period
     moves = counts[MOVED, 0] != 0.0
     nearest = counts[NEAREST_STOP, 0]

@@ -1,6 +1,6 @@
 """One steady state with the series of all its steps."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -8,10 +8,7 @@ from .._kernels.compiler.lending import lent, made
 from .._kernels.general.problem import H, Problem
 from .._kernels.general.record import Record
 from .._kernels.general.series import Friction
-from .._kernels.general.steady import Steady, make_workspace, one_steady_state
-
-#: Steps that are kept at first.
-_FIRST = 64
+from .._kernels.general.steady import Steady, Workspace, make_workspace, one_steady_state
 
 
 class Recorded(NamedTuple):
@@ -26,9 +23,22 @@ class Recorded(NamedTuple):
     steps: int  # how many there are
 
 
+class Memory(NamedTuple):
+    """What a steady state is found and recorded in."""
+
+    workspace: Workspace
+    given: Any  # the same, lent
+
+
+def make_memory(problem: Problem, masses: np.ndarray, most: int) -> Memory:
+    """Allocate memory for a record of `most` steps; other problems of the same sizes can use it later."""
+    workspace = made(make_workspace, problem, masses, most)
+    return Memory(workspace, lent(workspace))
+
+
 def recorded_state(
     problem: Problem, i: int, friction: Friction, start: np.ndarray, limits: tuple[int, float],
-    masses: np.ndarray, most: int = _FIRST, settled: bool = True,
+    masses: np.ndarray, memory: Memory, settled: bool = True,
 ) -> Recorded:  # fmt: skip
     """Find the steady state of one cell; where there is no room for all its steps, once more with more.
 
@@ -37,17 +47,17 @@ def recorded_state(
     problem, i, friction, masses : see `one_steady_state`
     start : initial state, see `from_rest`
     limits : periods followed at most, and tolerance
-    most : steps for which there is room at first; 0: none are kept
+    memory : what it is found in; the record is valid until that is used again
     settled : see `one_steady_state`
     """
     cycles, tolerance = limits
     while True:
-        workspace = made(make_workspace, problem, masses, most)
+        workspace, given = memory
         found, halves, multiplier = one_steady_state(
-            lent(problem), i, lent(friction), start, float(cycles), tolerance, lent(workspace), settled
+            lent(problem), i, lent(friction), start, float(cycles), tolerance, given, settled
         )
         record, steps = workspace.record, int(workspace.record.count[0])
-        if steps <= most or most == 0:
+        if steps <= record.steps.shape[0]:
             counts, h = workspace.memory.counts, float(workspace.row.numbers[H])
             return Recorded(found, halves, multiplier, counts, record, h, steps)
-        most = 4 * steps
+        memory = make_memory(problem, masses, 4 * steps)

@@ -116,7 +116,8 @@ PUBLIC = {
     ("numba.core", "event"), ("llvmlite", "ir"), ("numba.extending", "lower_builtin"),
     ("numba.extending", "models"), ("numba.extending", "register_model"),
     ("numba.extending", "type_callable"), ("numba.extending", "infer_getattr"),
-    ("numba.extending", "lower_getattr_generic"),
+    ("numba.extending", "lower_getattr_generic"), ("numba.extending", "NativeValue"),
+    ("numba.extending", "typeof_impl"), ("numba.extending", "unbox"),
     ("numba.core.typing.templates", "AttributeTemplate"),  # of which `infer_getattr` registers a class
 }  # fmt: skip
 

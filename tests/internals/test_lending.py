@@ -1,11 +1,12 @@
 """Named tuples that Python makes and lends to entries: the same values, one memory for every job."""
 
+import pickle
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
-from frictionmap._kernels.compiler import entry, kernel
+from frictionmap._kernels.compiler import entry, kernel, lending
 from frictionmap._kernels.compiler.lending import Memories, lent, made
 
 pytestmark = pytest.mark.plain
@@ -69,6 +70,38 @@ def test_what_is_lent_lives_as_long_as_it():
     kept = [np.full(3, 1e300) for _ in range(100)]  # takes the place of arrays that are gone
     assert _use(own) == (True, 10)
     assert len(kept) == 100
+
+
+def test_tuples_alike_are_typed_once(monkeypatch):
+    """numba takes milliseconds for the type of a tuple of a hundred arrays, more than most kernels run."""
+    typed = []
+    typeof = lending.numba.typeof
+    monkeypatch.setattr(lending.numba, "typeof", lambda group: typed.append(group) or typeof(group))
+    whole = _whole(True)
+    first = lent(whole)
+    if isinstance(first, tuple):  # as plain Python nothing is lent
+        return
+    typed.clear()
+    assert lent(_whole(False)).kind is first.kind
+    assert not typed
+    others = [whole._replace(table=table) for table in (whole.table.T, whole.table[:, ::2], whole.table[0])]
+    fixed = whole.table.copy()
+    fixed.flags.writeable = False
+    kinds = {lent(other).kind for other in (*others, whole._replace(table=fixed), whole._replace(count=7.0))}
+    assert len(kinds | {first.kind}) == 6
+    assert pickle.loads(pickle.dumps(first.kind)) == first.kind
+    assert hash(pickle.loads(pickle.dumps(first.kind))) == hash(first.kind)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_arrays_need_not_be_contiguous_or_writable(turned):
+    whole = _whole(True)
+    table = whole.table.copy().T if turned else whole.table.copy()
+    table.flags.writeable = False
+    other = whole._replace(table=table)
+    assert _use(lent(other)) == (True, 7 + table.shape[1])
+    expected = sum(table[i, k] * (i + 10.0 * k) for i in range(table.shape[0]) for k in range(table.shape[1]))
+    assert other.found[0] == expected
 
 
 @kernel

@@ -5,6 +5,7 @@ import pytest
 from records import Truth, base_at, places, steady
 
 import frictionmap as fm
+from frictionmap.general import one_mass
 from frictionmap.general.one_mass import steady_motion
 
 #: The base of the tests: harmonics 0 to 5.
@@ -30,6 +31,30 @@ def test_one_harmonic_is_the_one_mass_of_maps(seed):
     atol = max(1e-13 * np.abs(ds.z).max().item(), 1e-14)
     np.testing.assert_allclose(found, ds.z.values[: phases.size], atol=atol)
     assert state.stops == np.nan_to_num(ds.stops_per_cycle)  # of what is stuck there is no number
+
+
+def test_motions_do_not_depend_on_those_found_before_in_the_same_memory():
+    """Of four sizes of memory each is used by several motions, in two orders; all are the same to the bit."""
+    rng = np.random.default_rng(7)
+    phases = np.linspace(0.0, 6.0, 20)
+    cells = []
+    for k in range(48):
+        load = [0.1, 1.0, 0.3j, *([0.2] if k % 2 else [])]
+        mu, spring = (1.0, 3.0 * (k % 3)) if k % 3 else (1.0 + 0.2 * (k % 2), 0.0)
+        cells.append((rng.uniform(0.3, 2.0), rng.uniform(0.0, 0.2), rng.uniform(0.0, 1.2), mu, load, spring))
+
+    def found(cell):
+        r, zeta, friction, mu, load, spring = cell
+        state = steady_motion(r, zeta, friction, mu, np.array(load), (0.0, 0.01), phases, 500, spring)
+        return repr(state._replace(places=state.places.tolist()))
+
+    alone = []
+    for cell in cells:
+        one_mass._memories.cache_clear()
+        alone.append(found(cell))
+    assert [found(cell) for cell in cells] == alone
+    assert [found(cell) for cell in cells[::-1]] == alone[::-1]
+    assert one_mass._memories.cache_info().hits > 48
 
 
 @pytest.mark.parametrize(

@@ -48,6 +48,9 @@ class Packed(types.Type):
     def key(self) -> Any:
         return self.group
 
+    def __hash__(self) -> int:
+        return hash(self.name)  # a string keeps its hash; that of the group goes through all its members
+
     @property
     def instance_class(self) -> type:
         """The class of the tuple, as numba's type of the tuple has it."""

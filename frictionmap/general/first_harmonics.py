@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import regimes
+from .._kernels.compiler.lending import lent
 from .._kernels.general.counts import MOVED
 from .._kernels.general.samples import fill_phasors
 from .._kernels.general.series import Friction
@@ -13,7 +14,7 @@ from .boundaries import friction_lines, rest_states
 from .held import held_displacements, least_static_friction, stick_scales
 from .observed import has_residual
 from .problem import general_of, problem_of
-from .recorded import make_memory, recorded_state
+from .recorded import Memory, recorded_state
 
 #: Steps for which there is room at first.
 _STEPS = 64
@@ -65,12 +66,12 @@ def _follow(
     kinetic, _ = friction_lines(system, np.ones(1))
     starts, solver = rest_states(system, modal, at), Solver()
     no_masses = np.empty((0, modal.squares.size))  # their displacements are not recorded: modes are enough
-    memory = make_memory(problem, no_masses, _STEPS)
+    memory, given = Memory(problem, no_masses, _STEPS), lent(problem)
     for k in chosen:
         force = kinetic @ np.array([beta[k], 1.0])
         state, _, _, counts, record, h, steps = recorded_state(
-            problem, index[k], Friction(force, force), starts[index[k]], (solver.cycles, solver.tolerance),
-            no_masses, memory, settled=False,
+            given, index[k], Friction(force, force), starts[index[k]], (solver.cycles, solver.tolerance),
+            memory, settled=False,
         )  # fmt: skip
         if state.status != REPEATS:
             continue

@@ -13,7 +13,7 @@ from .._kernels.general.row import intervals_of
 from .._kernels.general.samples import fill_samples
 from .._kernels.general.series import Friction
 from .._kernels.general.steady import AVERAGED, REPEATS
-from .recorded import Memory, make_memory, recorded_state
+from .recorded import Memory, recorded_state
 
 _TOLERANCE = 1e-12
 
@@ -58,7 +58,7 @@ def _memories(harmonics: int, elastic: bool, intervals: int, most: int) -> Memor
     """Memory for problems of one size: a fit finds thousands of motions, each quicker than its allocation."""
     alike = _problem(1.0, 0.0, np.ones(harmonics + 1, dtype=complex), float(elastic))
     rate = (intervals - 0.5) * TURN / math.pi
-    return Memories(lambda: make_memory(alike._replace(rates=np.array([rate])), _NO_MASSES, most))
+    return Memories(lambda: Memory(alike._replace(rates=np.array([rate])), _NO_MASSES, most))
 
 
 def _memories_for(problem: Problem) -> Memories[Memory]:
@@ -93,7 +93,7 @@ def steady_motion(
     places = np.empty(phases.size)
     with _memories_for(problem).one() as memory:
         found, halves, _, counts, record, h, steps = recorded_state(
-            problem, 0, forces, state, (cycles, _TOLERANCE), _NO_MASSES, memory, False
+            problem, 0, forces, state, (cycles, _TOLERANCE), memory, False
         )
         period, counts = halves // 2, counts.copy()
         fill_samples(record.steps, record.patterns, steps, 0, h, period, phases, places)

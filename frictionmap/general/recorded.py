@@ -8,7 +8,7 @@ from .._kernels.compiler.lending import lent, made
 from .._kernels.general.problem import H, Problem
 from .._kernels.general.record import Record
 from .._kernels.general.series import Friction
-from .._kernels.general.steady import Steady, Workspace, make_workspace, one_steady_state
+from .._kernels.general.steady import Steady, make_workspace, one_steady_state
 
 
 class Recorded(NamedTuple):
@@ -23,28 +23,33 @@ class Recorded(NamedTuple):
     steps: int  # how many there are
 
 
-class Memory(NamedTuple):
-    """What a steady state is found and recorded in."""
+class Memory:
+    """What steady states of problems of the same sizes are found and recorded in, one after the other.
 
-    workspace: Workspace
-    given: Any  # the same, lent
+    problem : one of them
+    masses : see `make_record`
+    most : steps that there is room for at first
+    """
 
+    def __init__(self, problem: Problem, masses: np.ndarray, most: int) -> None:
+        self._problem, self._masses = problem, masses
+        self.make_room(most)
 
-def make_memory(problem: Problem, masses: np.ndarray, most: int) -> Memory:
-    """Allocate memory for a record of `most` steps; other problems of the same sizes can use it later."""
-    workspace = made(make_workspace, problem, masses, most)
-    return Memory(workspace, lent(workspace))
+    def make_room(self, most: int) -> None:
+        """Allocate the memory anew, for more steps."""
+        self.workspace = made(make_workspace, self._problem, self._masses, most)
+        self.given = lent(self.workspace)
 
 
 def recorded_state(
-    problem: Problem, i: int, friction: Friction, start: np.ndarray, limits: tuple[int, float],
-    masses: np.ndarray, memory: Memory, settled: bool = True,
+    problem: Any, i: int, friction: Friction, start: np.ndarray, limits: tuple[int, float], memory: Memory,
+    settled: bool = True,
 ) -> Recorded:  # fmt: skip
     """Find the steady state of one cell; where there is no room for all its steps, once more with more.
 
     Parameters
     ----------
-    problem, i, friction, masses : see `one_steady_state`
+    problem, i, friction : see `one_steady_state`; what is used again may be lent already
     start : initial state, see `from_rest`
     limits : periods followed at most, and tolerance
     memory : what it is found in; the record is valid until that is used again
@@ -52,12 +57,12 @@ def recorded_state(
     """
     cycles, tolerance = limits
     while True:
-        workspace, given = memory
         found, halves, multiplier = one_steady_state(
-            lent(problem), i, lent(friction), start, float(cycles), tolerance, given, settled
+            lent(problem), i, lent(friction), start, float(cycles), tolerance, memory.given, settled
         )
+        workspace = memory.workspace
         record, steps = workspace.record, int(workspace.record.count[0])
         if steps <= record.steps.shape[0]:
             counts, h = workspace.memory.counts, float(workspace.row.numbers[H])
             return Recorded(found, halves, multiplier, counts, record, h, steps)
-        memory = make_memory(problem, masses, 4 * steps)
+        memory.make_room(2 * steps)

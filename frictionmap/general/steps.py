@@ -28,7 +28,7 @@ from .maps import put_offset
 from .observed import observed_rows, of_contacts_last
 from .outputs import allocate, drifts
 from .problem import ModalSystem, general_of, problem_of
-from .recorded import make_memory, recorded_state
+from .recorded import Memory, recorded_state
 from .starts import initial_states
 from .still import put_still
 
@@ -196,8 +196,8 @@ def cell_steps(
     if rests and not unique:  # rounding must not decide whether a load at the limit moves it
         limits = friction._replace(static=np.full_like(friction.static, np.inf))
     found, halves, multiplier, counts, record, h, count = recorded_state(
-        problem, i, limits, start, (solver.cycles, solver.tolerance), rows,
-        make_memory(problem, rows, _FIRST), settled=not system.rigid_modes,
+        problem, i, limits, start, (solver.cycles, solver.tolerance),
+        Memory(problem, rows, _FIRST), settled=not system.rigid_modes,
     )  # fmt: skip
     if found.status not in (REPEATS, AVERAGED):
         raise NoSteadyState(

@@ -104,12 +104,13 @@ def _unbox_lent(kind: Packed, lent: Any, context: Any) -> NativeValue:
     return NativeValue(context.builder.bitcast(address, context.context.get_value_type(kind)))
 
 
-def lent(group: tuple) -> Any:
+def lent(group: Any) -> Any:
     """Return a named tuple of arrays, numbers and such tuples for entries to take.
 
     Kernels read its attributes as those of a packed tuple.  Arrays of the tuple may change, the tuple not.
+    What is lent already is returned as it is.
     """
-    return group if config.DISABLE_JIT else _Lent(group)
+    return group if config.DISABLE_JIT or isinstance(group, _Lent) else _Lent(group)
 
 
 class _Block(threading.local):

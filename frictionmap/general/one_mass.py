@@ -53,7 +53,7 @@ def _problem(r: float, zeta: float, load: np.ndarray, spring: float) -> Problem:
     )  # fmt: skip
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=16)
 def _memories(harmonics: int, elastic: bool, intervals: int, most: int) -> Memories[Memory]:
     """Memory for problems of one size: a fit finds thousands of motions, each quicker than its allocation."""
     alike = _problem(1.0, 0.0, np.ones(harmonics + 1, dtype=complex), float(elastic))
@@ -62,12 +62,16 @@ def _memories(harmonics: int, elastic: bool, intervals: int, most: int) -> Memor
 
 
 def _memories_for(problem: Problem) -> Memories[Memory]:
-    """Memory with room for the steps between events, and some more."""
+    """Memory with room for the steps between events, and some more; few sizes, so that it is used again."""
     rate = float(problem.rates[0])
     steps = int(4.0 * math.pi * rate / TURN) + _EVENTS
-    return _memories(
-        problem.orders.size, bool(problem.spring[0]), made(intervals_of, rate), 1 << (steps - 1).bit_length()
-    )
+    sizes = (_power_of_two(made(intervals_of, rate)), _power_of_two(steps))
+    return _memories(problem.orders.size, bool(problem.spring[0]), *sizes)
+
+
+def _power_of_two(count: int) -> int:
+    """The least power of two that is not below a number."""
+    return 1 << (count - 1).bit_length()
 
 
 def steady_motion(

@@ -47,7 +47,8 @@ MARKED = {
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the option of the trials with invalid input."""
-    parser.addoption("--whole", action="store_true", help="tests/fuzz: all trials, not some of every kind")
+    whole = "tests that take minutes (marker `whole`), too; tests/fuzz: all trials, not some of every kind"
+    parser.addoption("--whole", action="store_true", help=whole)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -68,9 +69,11 @@ def pytest_sessionstart(session: pytest.Session) -> None:
         precompile.all_parts()
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark tests by what they need, and begin with the longest files."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark tests by what they need, skip those that take minutes, and begin with the longest files."""
     for item in items:
+        if item.get_closest_marker("whole") and not config.getoption("--whole"):
+            item.add_marker(pytest.mark.skip(reason="takes minutes; run with --whole"))
         fixtures = getattr(item, "fixturenames", ())
         needed = [name for name, files in MARKED.items() if item.path.name in files]
         needed += [name for name, fixture in FIXTURES.items() if fixture in fixtures]

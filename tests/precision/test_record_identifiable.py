@@ -35,6 +35,7 @@ def value(ds, name, what="estimate"):
     return float(ds[what].sel(parameter=name))
 
 
+@pytest.mark.whole
 @pytest.mark.slow
 def test_what_everything_free_gives_is_not_called_found():
     """It is wrong: damping is many times the true one, and mu is beyond 2."""

@@ -144,7 +144,9 @@ def test_a_wrong_held_value_is_named():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("held", [{"f_n": 3.13, "zeta": 0.0055, "mu": 1.0}, {}])
+@pytest.mark.parametrize(
+    "held", [{"f_n": 3.13, "zeta": 0.0055, "mu": 1.0}, pytest.param({}, marks=pytest.mark.whole)]
+)
 def test_friction_that_falls_with_speed_is_not_called_found(held):
     """Nothing in reach explains it."""
     ds = fit(falling(Imperfect(0.84, rise=0.6, contact=60.0), 1), **held)

@@ -72,8 +72,7 @@ class BankMotions(Motions):
 
     def at(self, beta: float, mu: float, scale: float, asked: Asked, events: bool) -> Found:
         """Follow one motion; see `Motions.follow`."""
-        moves_on = self.drive.base.any(axis=0) & (scale * self.drive.terms[-1, :, 1:]).any(axis=1)
-        bed = self.held.bed._replace(active=self.held.bed.active * int(not moves_on.any()))
+        bed = self.bed_after(scale)
         most = self._limits(beta)
         cell = Cell(most, np.zeros(self.banks.left.size))
         begin = np.zeros(most.size) if asked.start.stretch is None else asked.start.stretch

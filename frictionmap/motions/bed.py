@@ -1,4 +1,4 @@
-"""The structure with all contacts held, under no load: its place of rest, and whether it moves again."""
+"""The structure with all contacts held, after a record: its place of rest, and whether it moves again."""
 
 from typing import NamedTuple
 
@@ -11,6 +11,9 @@ from .._kernels.history.asleep import Bed
 #: restores, computed with rounding error.
 FREE = 1e-13
 
+#: A force by walls that go on is 0 below this share of what the stiffest mode needs.
+_DRAGGED = 1e-9
+
 
 class Held(NamedTuple):
     """The structure with all contacts held; s is the state q, q', f of springs."""
@@ -19,6 +22,41 @@ class Held(NamedTuple):
     rest: np.ndarray  # (m, 2 m + N) modes at the place of rest
     slowest: float  # lowest natural frequency of the held structure; infinite if nothing vibrates
     restored: bool  # whether every motion that the contacts leave has one
+
+
+class Left(NamedTuple):
+    """What a base that keeps a velocity goes on doing after its record."""
+
+    walls: np.ndarray  # (N,) velocities of walls
+    load: np.ndarray  # (m,) constant load by dampers to the ground
+
+    def at(self, bed: Bed, squares: np.ndarray, factor: float) -> Bed:
+        """The bed after a record of this factor; squares : (m,) of the frequencies of the modes."""
+        restored = squares > 0.0
+        still = not factor or not (self.walls.any() or self.load[~restored].any())
+        shift = factor * np.where(restored, self.load / np.where(restored, squares, 1.0), 0.0)
+        return bed._replace(active=bed.active * int(still), shift=shift)
+
+
+def left_by(problem: Problem, last: np.ndarray, step: float) -> Left:
+    """Find it.
+
+    last : (D, terms) polynomials of the channels after the record, over intervals of length `step`
+    """
+    return Left(problem.base @ last[:, 1] / step, problem.push @ last[:, 0])
+
+
+def dragged(problem: Problem, left: Left) -> np.ndarray:
+    """Contacts whose forces grow without end while all of them are held at walls that go on, (N,) bool.
+
+    Static forces F that give every contact the velocity w of its wall: K q = chi^T F, chi q + F/kt = w.
+    """
+    walls, elastic = left.walls + problem.belt, problem.spring > 0.0
+    flexible = np.where(elastic, 1.0 / np.where(elastic, problem.spring, 1.0), 0.0)
+    both = np.block([[np.diag(problem.squares), -problem.chi.T], [problem.chi, np.diag(flexible)]])
+    forces = np.linalg.lstsq(both, np.concatenate((0.0 * problem.squares, walls)))[0][problem.squares.size :]
+    stiffness = problem.squares.max() / (problem.chi**2).sum(axis=1) + problem.spring
+    return np.asarray(np.abs(forces) > _DRAGGED * stiffness * np.abs(walls).max())
 
 
 def basis_beside(rigid: np.ndarray, modes: int) -> np.ndarray:
@@ -67,7 +105,7 @@ def held(problem: Problem) -> Held:
     return Held(
         Bed(
             np.ascontiguousarray(vibration), np.ascontiguousarray(forces), gains,
-            np.array([not belt], dtype=np.int64),
+            np.array([not belt], dtype=np.int64), np.zeros(modes),
         ),
         np.ascontiguousarray(rest), float(omega.min(initial=np.inf)), bool(restored.all()),
     )  # fmt: skip

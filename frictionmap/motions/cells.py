@@ -7,11 +7,12 @@ import numpy as np
 
 from .._kernels.general.record import make_record
 from .._kernels.general.series import Friction
+from .._kernels.history.asleep import Bed
 from .._kernels.history.course import CREEPING, Course
 from .._kernels.history.kept import Kept, make_kept
 from .._kernels.history.motion import Memory, make_memory
 from .._kernels.motions_in_time import NEEDS_BED, SINCE, follow_record
-from .bed import held
+from .bed import held, left_by
 from .channels import Drive
 from .energies import energies_over_time
 from .starts import Start
@@ -120,6 +121,7 @@ class Motions:
         self.ties = ties_of(structure)
         self.ties[~varying(drive)] = False
         self.held = held(self.problem)
+        self.left = left_by(self.problem, drive.terms[-1], drive.steps[-1])
         self.watched = watched_of(structure, self.problem, drive)
 
     def limits_of(self, asked: Asked, events: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -202,13 +204,18 @@ class Motions:
             kept = make_kept(problem, weights, rounding, record, room)
             return make_memory(one, still, weights.shape[0], course.pieces.shape[2], lengths), kept
 
-        ran = self.run(asked, scale, events, Kernels(problem, friction, memory, lambda _: self.held.bed))
+        bed = self.bed_after(scale)
+        ran = self.run(asked, scale, events, Kernels(problem, friction, memory, lambda _: bed))
         motion = ran.memory.motion
         state = motion.state[:2, : problem.squares.size]
         found = Found(
             ran.status, scale, ran.kept, ran.memory.counts, state, motion.sense, ran.end, ran.asleep, None
         )
         return found._replace(place=self._place(found))
+
+    def bed_after(self, scale: float) -> Bed:
+        """The bed after the record, at a factor of it."""
+        return self.left.at(self.held.bed, self.problem.squares, scale)
 
     def rounding_of(
         self, weights: np.ndarray, static: np.ndarray, scale: float, further: Sequence[np.ndarray] = ()
@@ -271,14 +278,14 @@ class Motions:
         return {}
 
     def state_at_end(self, one: Found) -> np.ndarray:
-        """q, q' and forces of springs at the end."""
+        """State s of the bed at the end: q - shift, q' and forces of springs."""
         springs = np.where(self.structure.spring > 0.0, one.kept.forces, 0.0)
-        return np.concatenate((one.state[0], one.state[1], springs))
+        return np.concatenate((one.state[0] - self.bed_after(one.scale).shift, one.state[1], springs))
 
     def _place(self, one: Found) -> np.ndarray | None:
         """Where the masses come to rest."""
         if one.asleep == one.asleep and self.held.restored:
-            return self.held.rest @ self.state_at_end(one)
+            return self.held.rest @ self.state_at_end(one) + self.bed_after(one.scale).shift
         return one.state[0] if one.status == CREEPING else None
 
     def _residual_places(self, one: Found) -> np.ndarray:

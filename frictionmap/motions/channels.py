@@ -246,7 +246,9 @@ def drive_of(system: System, record: Record, scale: Scale) -> Drive:
         if one.of_base or one.moves_on:
             last[0, 0] = own[-1].sum()
             if one.moves_on and one.of_base:
-                last[0, 1] = own[-1] @ np.arange(own.shape[1]) / steps[-1] * step
+                last[0, 1] = _rate_at_end(own, steps) * step
+            elif one.moves_on and abs(last[0, 0]) <= _SAME * np.abs(own).sum(axis=1).max():
+                last[0, 0] = 0.0
         after.append(last)
     table = np.stack([np.vstack(pair) for pair in zip(terms, after, strict=True)], axis=1)
     sizes = np.abs(table).max(axis=(0, 2))
@@ -259,6 +261,13 @@ def drive_of(system: System, record: Record, scale: Scale) -> Drive:
         np.concatenate((acceleration, np.zeros(len(normal)))), np.array([one.of_base for one in channels]),
         *_displaced(system, channels),
     )  # fmt: skip
+
+
+def _rate_at_end(terms: np.ndarray, steps: np.ndarray) -> float:
+    """Rate at the end of polynomials (K, terms); a rounding error of what it was before is 0."""
+    order = np.arange(terms.shape[1])
+    rate, largest = float(terms[-1] @ order / steps[-1]), float((np.abs(terms) @ order / steps).max())
+    return rate if abs(rate) > _SAME * largest else 0.0
 
 
 def _displaced(system: System, channels: list[Channel]) -> tuple[np.ndarray, np.ndarray]:

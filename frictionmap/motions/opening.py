@@ -82,8 +82,8 @@ def state_of(memory: Memory) -> np.ndarray:
 class _Beds:
     """The beds of one motion, by phase."""
 
-    def __init__(self, problem: Problem, cell: Cell, free: int, still: bool) -> None:
-        self.problem, self.cell, self.free, self.still = problem, cell, free, still
+    def __init__(self, problem: Problem, cell: Cell, free: int, still: bool, load: np.ndarray) -> None:
+        self.problem, self.cell, self.free, self.still, self.load = problem, cell, free, still, load
         self.known: dict[tuple[int, ...], Phase] = {}
 
     @property
@@ -99,7 +99,7 @@ class _Beds:
         pattern = pattern_of(memory)
         key = tuple(pattern.tolist())
         if key not in self.known:
-            self.known[key] = bed_of(self.problem, self.cell, pattern, self.free, self.still)
+            self.known[key] = bed_of(self.problem, self.cell, pattern, self.free, self.still, self.load)
         return self.known[key]
 
     def bed(self, memory: Memory | None) -> Bed:
@@ -189,7 +189,8 @@ class OpeningMotions(Motions):
         still = not (
             self.problem.belt.any() or (scale and self.drive.terms[-1, self.drive.of_base, 1:].any())
         )
-        beds = _Beds(self.phases, cell, self.free, still)
+        load = np.pad(scale * self.left.load, (0, self.phases.squares.size - self.free))
+        beds = _Beds(self.phases, cell, self.free, still, load)
         watched = self.watched.weights if weights is None else weights
         rounding = self._rounding(watched, cell, scale)
         size = float(self.problem.sizes[0]) * (abs(scale) or 1.0)

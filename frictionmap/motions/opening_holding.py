@@ -53,7 +53,7 @@ def _held(motions: OpeningMotions, mu: np.ndarray) -> _Held:
 
 
 def _at_scale(motions: OpeningMotions, held: _Held, scale: float, asked: Asked) -> np.ndarray:
-    """The friction at one factor of the record, (M, N).
+    """The friction at one factor of the record, (M, N); NaN where walls or the base go on after it.
 
     After the record the free vibration is followed until its energy bounds all later forces.
     """
@@ -67,15 +67,17 @@ def _at_scale(motions: OpeningMotions, held: _Held, scale: float, asked: Asked) 
         gap = held.own & (motions.phases.law != SMOOTH)
         closed = (motion.open == 0) | (motion.counts[LIFTOFFS] > 0.0)
         needed[:, gap & closed] = np.nan
-        if asked.after is not None or not beds.still:
+        if asked.after is not None:
             return needed
-        later, period = _later(motions, held, ran)
+        if not beds.still:
+            return np.full_like(needed, np.nan)
+        later, period = _later(motions, held, ran, beds.load)
         if (later <= needed * (1.0 + SAME))[~np.isnan(needed)].all() or after >= MOST_PERIODS * period:
             return needed
         after = max(2.0 * after, period)
 
 
-def _later(motions: OpeningMotions, held: _Held, ran: Ran) -> tuple[np.ndarray, float]:
+def _later(motions: OpeningMotions, held: _Held, ran: Ran, load: np.ndarray) -> tuple[np.ndarray, float]:
     """Bounds on these from now on, (M, N), infinite where the phase may end; period of the slowest mode."""
     problem, state, pattern = motions.phases, state_of(ran.memory), pattern_of(ran.memory)
     count, nothing = int(problem.presses.sum()), np.zeros(held.own.size)
@@ -83,7 +85,7 @@ def _later(motions: OpeningMotions, held: _Held, ran: Ran) -> tuple[np.ndarray, 
     period = 0.0
     for m, static in enumerate(held.static):
         cell = Cell(nothing, static, np.where(held.own, held.cell.preload, 0.0), held.cell.constant)
-        phase = bed_of(problem, cell, pattern, motions.free, True)
+        phase = bed_of(problem, cell, pattern, motions.free, True, load)
         bed, period = phase.bed, 2.0 * np.pi / phase.slowest
         size = np.linalg.norm(bed.vibration @ state)
         least = bed.margins @ state - size * bed.gains

@@ -31,8 +31,8 @@ class _Forces(NamedTuple):
     rigid: np.ndarray  # (N,) bool: those without a spring
 
 
-def _forces(problem: Problem, cell: Cell, pattern: np.ndarray) -> _Forces:
-    """What acts in a phase whose contacts are open or held."""
+def _forces(problem: Problem, cell: Cell, pattern: np.ndarray, load: np.ndarray) -> _Forces:
+    """What acts in a phase whose contacts are open or held, under a constant load on the modes."""
     contacts, modes = problem.chi.shape
     size = 2 * modes + contacts + 1
     opened = pattern[:contacts] == LIFTED
@@ -48,7 +48,7 @@ def _forces(problem: Problem, cell: Cell, pattern: np.ndarray) -> _Forces:
         stiffness += slope * np.outer(problem.along[s], problem.along[s])
         constant += problem.along[s] * (problem.forces[s, knot] - slope * problem.knots[s, knot])
     now = np.zeros((modes, size))
-    now[:, :modes], now[:, -1] = stiffness, constant
+    now[:, :modes], now[:, -1] = stiffness, constant - load
     now[:, 2 * modes : -1][:, elastic] = problem.chi[elastic].T
     kt = np.where(elastic, problem.spring, 0.0)
     stiffness = stiffness + problem.chi.T @ (kt[:, np.newaxis] * problem.chi)
@@ -67,15 +67,18 @@ class _Rows(NamedTuple):
         self.gains.append(float(np.sqrt(by_place @ by_place + rate)))
 
 
-def bed_of(problem: Problem, cell: Cell, pattern: np.ndarray, free: int, still: bool) -> Phase:
+def bed_of(
+    problem: Problem, cell: Cell, pattern: np.ndarray, free: int, still: bool, load: np.ndarray
+) -> Phase:
     """Build it.
 
     free : modes of the structure; others are the place of the base, which stays
     still : whether no wall moves without a load
+    load : (m,) constant load on the modes: by dampers, over which a base moves on
     """
     contacts, modes = problem.chi.shape
     size = 2 * modes + contacts + 1
-    acting = _forces(problem, cell, pattern)
+    acting = _forces(problem, cell, pattern, load)
     basis = np.pad(basis_beside(problem.chi[acting.rigid, :free], free), ((0, modes - free), (0, 0)))
     within = basis.T @ acting.stiffness @ basis
     squares, shapes = np.linalg.eigh(within) if basis.shape[1] else (np.empty(0), np.empty((0, 0)))

@@ -212,3 +212,19 @@ def test_an_open_contact_at_rest_stays_there():
     touched = fm.Record([0.0, -1.0, 0.0], 1.0, quantity="force")
     once = fm.Contact(stiffness=1.0, normal_record=touched)
     assert fm.history(fm.System(contacts=[once]), _RECORD, beta=0.1).status.item() == 0
+
+
+@pytest.mark.parametrize(
+    ("force", "normal", "how", "hold"),
+    [
+        ([0.0, 0.5, 1.0], [0.0, 0.25, 0.5], "linear", 1.0 / 1.5),  # both end there
+        ([1.0, 2.0, 0.5], [0.5, 1.0, -0.5], "hold", 1.0),
+        ([1.0, 2.0, 0.5], [0.5, -0.5, 1.0], "hold", 4.0),
+        ([1.0, 2.0, 2.0], [0.5, 1.0, -1.0], "hold", np.inf),
+    ],
+)
+def test_beta_hold_where_normal_loads_jump(force, normal, how, hold):
+    contact = fm.Contact(normal_record=fm.Record(normal, 1.0, quantity="force", interpolation=how))
+    record = fm.Record(force, 1.0, quantity="force", interpolation=how)
+    ds = fm.history(fm.System(contacts=[contact]), record)
+    assert ds.beta_hold.item() == pytest.approx(hold, rel=1e-12)

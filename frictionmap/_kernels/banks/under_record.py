@@ -222,11 +222,13 @@ def keep_start(memory, problem, cell, kept, shown):
 
 
 @kernel
-def _product(units, weights):
-    """Product of weights (2 m + N) with the state."""
+def _product(units, weights, shift):
+    """Product of weights (2 m + N) with the state s; see `history.asleep.Bed`."""
     total = 0.0
     for a in range(weights.size):
         total += weights[a] * units[a]
+    for i in range(shift.size):
+        total -= weights[i] * shift[i]
     return total
 
 
@@ -238,12 +240,12 @@ def sleep_of(memory, problem, cell, kept, bed):
     units = kept.units[END]
     motion, forces, square = memory.motion, 2 * problem.squares.size, 0.0
     for v in range(bed.vibration.shape[0]):
-        part = _product(units, bed.vibration[v])
+        part = _product(units, bed.vibration[v], bed.shift)
         square += part * part
     for j in range(problem.moved.size):
         stiffness = problem.left[problem.first[j] + j]
         z = displacement(problem, motion, j)
-        rest = z + (_product(units, bed.forces[j]) - units[forces + j]) / stiffness
+        rest = z + (_product(units, bed.forces[j], bed.shift) - units[forces + j]) / stiffness
         reach = math.sqrt(square) * bed.gains[j] / stiffness
         for i in range(problem.first[j], problem.first[j + 1]):
             if abs(rest - slider(problem, cell, motion, j, i, z)) + reach > cell.limit[i]:

@@ -21,7 +21,7 @@ from ..general.problem import (
     force_row,
     padded,
 )
-from ..general.record import HIGH, HIGH_AT, LOW, LOW_AT, Record, keep_range, keep_works
+from ..general.record import HIGH, HIGH_AT, LOW, LOW_AT, OF_FRICTION, Record, keep_range, keep_works
 
 STOP, START, TURN = 0, 1, 2
 
@@ -313,6 +313,15 @@ def _keep_works(problem, row, motion, end, kept):
             if problem.base[j, d] != 0.0:
                 force = series[force_row(problem, j)]
                 kept.works[OF_BASE] -= problem.base[j, d] * integral_by_slope(wall, force, end, terms)
+
+
+@kernel
+def add_slide(kept, j, way, work):
+    """Add a slide that takes no time."""
+    kept.record.distance[j] += way
+    kept.record.works[OF_FRICTION, j] += work
+    kept.slides[PRESENT, j] += way
+    kept.slides[LARGEST, j] = max(kept.slides[LARGEST, j], kept.slides[PRESENT, j])
 
 
 @kernel

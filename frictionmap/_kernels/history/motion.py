@@ -15,7 +15,7 @@ from ..general.follow import count_time, pass_event, prepare
 from ..general.laws.contact import jumps
 from ..general.laws.coulomb import first_event, reaches, watched_slope
 from ..general.laws.elastic import rest_springs
-from ..general.laws.kinds import has_constraint
+from ..general.laws.kinds import has_constraint, is_constrained
 from ..general.laws.speed import first_bound, has_law, is_at_speed, rate_under, set_segments
 from ..general.pattern import BOX_ROWS, PARTICIPATES, settle, stop_exactly
 from ..general.problem import (
@@ -58,6 +58,7 @@ from .springs import (
     follow_walls,
     has_varying_spring,
     rest_tied,
+    slip_at_start,
     slip_with_walls,
     turn_open,
 )
@@ -71,6 +72,9 @@ _SAME = 1e-12
 
 #: A velocity at the start within this share of its terms is rest.
 _AT_REST = 1e-12
+
+#: A force of a motion that goes on within this share of its limit does not exceed it.
+_EXCEEDS = 1e-10
 
 
 class Memory(NamedTuple):
@@ -314,6 +318,19 @@ def _begin_at_walls(problem, friction, memory, course, kept):
 
 
 @kernel
+def _is_overloaded(problem, row, friction, motion):
+    """Whether a held contact of a motion that goes on needs more than its friction: under another load."""
+    expand(problem, row, friction, 0.0, 0, motion, True)
+    found = False
+    for j in range(motion.sense.size):
+        if is_constrained(problem, motion, j):
+            limit = friction.static[j] * motion.series[normal_row(problem, j), 0]
+            force = motion.series[force_row(problem, j), 0]
+            found = found or abs(force) > limit * (1.0 + _EXCEEDS)
+    return found
+
+
+@kernel
 def begin(memory, problem, friction, course, start, senses, kept):
     """Set the state and the pattern at the start; False if the contacts do not determine their forces.
 
@@ -338,9 +355,12 @@ def begin(memory, problem, friction, course, start, senses, kept):
         by_law = senses[j] == BY_LAW
         motion.sense[j] = _sense_at_start(problem, row, motion, j) if by_law else senses[j]
     set_segments(problem, row, motion)
+    if senses[0] != BY_LAW:
+        slip_at_start(problem, row, friction, motion, kept)
     if not prepare(problem, row, friction, motion):
         return False
-    if senses[0] == BY_LAW and not _settle(problem, friction, memory):
+    settles = senses[0] == BY_LAW or _is_overloaded(problem, row, friction, motion)
+    if settles and not _settle(problem, friction, memory):
         return False
     before = memory.before
     before[:] = 1.0

@@ -14,15 +14,17 @@ import math
 from ..compiler import kernel
 from ..general.laws.kinds import has_force
 from ..general.problem import LOAD_TERMS, F, slide_velocity, varies, velocity_row
-from ..general.record import OF_FRICTION
 from ..general.row import set_channels
-from .kept import LARGEST, OF_BASE, PRESENT, list_changes
+from .kept import OF_BASE, add_slide, list_changes
 
 #: Share of the terms of a normal load that is rounding error of their sum.
 _SAME = 1e-13
 
 #: Leading terms of a velocity that may be zero at most.
 _MOST_ZEROS = 7
+
+#: A spring whose force is below this share of its limit does not slip.
+_BELOW = 1.0 - 1e-9
 
 #: A speed of a slider within this share of its terms is rest.
 _AT_REST = 1e-12
@@ -80,15 +82,6 @@ def _jump(problem, row, friction, motion, kept):
 
 
 @kernel
-def _add_slide(kept, j, way, work):
-    """Add a slide that takes no time."""
-    kept.record.distance[j] += way
-    kept.record.works[OF_FRICTION, j] += work
-    kept.slides[PRESENT, j] += way
-    kept.slides[LARGEST, j] = max(kept.slides[LARGEST, j], kept.slides[PRESENT, j])
-
-
-@kernel
 def follow_walls(problem, row, friction, motion, leaps, kept):
     """Let springs follow walls that jump: beyond their limits, sliders begin to slip.
 
@@ -123,7 +116,7 @@ def slip_with_walls(problem, row, friction, leaps, kept):
     for j in range(leaps.size):
         if leaps[j] > 0.0:
             limit, _, _ = _limit(problem, row, friction, j)
-            _add_slide(kept, j, leaps[j], limit * leaps[j])
+            add_slide(kept, j, leaps[j], limit * leaps[j])
 
 
 @kernel
@@ -135,8 +128,27 @@ def _slip_at_once(problem, row, friction, motion, kept):
         limit, _, _ = _limit(problem, row, friction, j)
         force = abs(motion.state[F, j])
         way = max(0.0, force - limit) / problem.spring[j]
-        _add_slide(kept, j, way, 0.5 * (force + limit) * way)
+        add_slide(kept, j, way, 0.5 * (force + limit) * way)
         motion.state[F, j] = motion.sense[j] * limit
+
+
+@kernel
+def slip_at_start(problem, row, friction, motion, kept):
+    """Adapt springs of a motion that goes on to their friction, which may be another.
+
+    Sliders slip at once until the forces are at lower limits, and rest below higher ones.
+    """
+    for j in range(motion.sense.size):
+        if not has_force(problem, j):
+            continue
+        limit, _, error = _limit(problem, row, friction, j)
+        force = motion.state[F, j]
+        if abs(force) > limit + error:
+            way = (abs(force) - limit) / problem.spring[j]
+            add_slide(kept, j, way, 0.5 * (abs(force) + limit) * way)
+            motion.state[F, j] = math.copysign(limit, force)
+        elif abs(force) < limit * _BELOW:
+            motion.sense[j] = 0
 
 
 @kernel

@@ -19,7 +19,7 @@ from ..history.course import (
     parts_of,
     slides_on_slowly,
 )
-from ..history.kept import BEGIN, END
+from ..history.kept import BEGIN, END, add_slide
 from .change import count_time, wake_tied
 from .follow import INSTANT, MOST_IMMEDIATE, pass_event
 from .kept import (
@@ -33,18 +33,22 @@ from .kept import (
     store_state,
 )
 from .pattern import begin_pattern, find_piece, is_at_rest, rest_tied, settle
-from .problem import NORMAL, RIGID, SMOOTH, UP, F, watch_row
+from .problem import ELASTIC, NORMAL, RIGID, SMOOTH, UP, F, watch_row
 from .rest import keep_places, note_places
 from .series import (
     advance,
     begin_terms,
     dot,
     factor_held,
+    limit_at,
     observe,
     slave_forces,
     stop_exactly,
 )
 from .watch import clear_leads, is_watched, put_knot, put_watched
+
+#: A spring whose force is its limit but for this share of it slips, or is about to.
+_NEAR = 1e-9
 
 #: Leading terms of a watched quantity that may be zero where a step begins, as at rest under a load t^4.
 _MOST_ZEROS = 8
@@ -270,8 +274,24 @@ def follow_part(memory, problem, cell, course, kept, part, jump, listed):
 
 
 @kernel
-def _go_on(problem, cell, memory, senses):
-    """Take the pattern of a motion that goes on from its senses; open are contacts by their place."""
+def _adapt_spring(problem, cell, motion, j, kept):
+    """Adapt the spring of a motion that goes on to its friction, see `history.springs.slip_at_start`."""
+    most = limit_at(problem, cell, j, dot(problem.normal, j, motion.q))
+    size = abs(motion.f[j])
+    if size > most * (1.0 + _NEAR):
+        way = (size - most) / problem.spring[j]
+        add_slide(kept, j, way, 0.5 * (size + most) * way)
+        motion.f[j] = most if motion.f[j] > 0.0 else -most
+    elif size < most * (1.0 - _NEAR):
+        motion.sense[j] = 0
+
+
+@kernel
+def _go_on(problem, cell, memory, senses, kept):
+    """Take the pattern of a motion that goes on from its senses; open are contacts by their place.
+
+    Under another load, or less friction, held contacts may begin to slide.
+    """
     motion, row = memory.motion, memory.row
     for s in range(motion.piece.size):
         find_piece(problem, motion, s)
@@ -281,9 +301,13 @@ def _go_on(problem, cell, memory, senses):
             pressed = problem.pressed[j] * dot(problem.normal, j, motion.q)
             motion.open[j] = 1 if cell.preload[j] + pressed < 0.0 else 0
         motion.sense[j] = 0 if motion.open[j] != 0 or problem.law[j] == SMOOTH else senses[j]
+        if problem.law[j] == ELASTIC and motion.open[j] == 0:
+            _adapt_spring(problem, cell, motion, j, kept)
     slave_forces(problem, cell, motion)
-    if not factor_held(problem, row, motion):
+    note_senses(memory)
+    if not (settle(problem, row, cell, motion, -1, 0) and factor_held(problem, row, motion)):
         return False
+    _lead_sliders(problem, memory)
     rest_tied(problem, cell, motion)
     stop_exactly(problem, row, motion)
     return True
@@ -312,7 +336,7 @@ def begin(memory, problem, cell, course, start, senses, kept):
         for j in range(problem.law.size):
             memory.before[j] = 0 if is_at_rest(problem, row, motion, j) else 1
         _lead_sliders(problem, memory)
-    elif not _go_on(problem, cell, memory, senses):
+    elif not _go_on(problem, cell, memory, senses, kept):
         return False
     memory.before[:] = 1
     note_places(problem, memory, 0.0, course.times[0])

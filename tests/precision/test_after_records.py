@@ -25,7 +25,7 @@ def test_a_base_that_moves_on_drags_its_mass_along_the_wall(contact, scale):
     velocity = abs(scale)
     held = (5.0 - 0.1 * velocity) / velocity  # place of the base over its velocity: 2 zeta of the damper
     assert ds.first_motion.item() == pytest.approx(1.0 + held, rel=1e-2 if contact else 1e-12)
-    assert ds.status.item() == 2  # it slides for good, ever less relative to the base
+    assert ds.status.item() == 2  # it slides permanently, ever less relative to the base
     assert ds.residual.item() == pytest.approx(-5.0 * np.sign(scale), rel=1e-9)
     assert np.isinf(ds.beta_hold.item())
     assert np.isfinite(fm.history(system, KICK, beta=5.0, after=10.0, samples="none").beta_hold.item())

@@ -47,7 +47,7 @@ from .series import (
 )
 from .watch import clear_leads, is_watched, put_knot, put_watched
 
-#: A spring whose force is its limit but for this share of it slips, or is about to.
+#: A spring whose force is within this share of its limit slips, or is about to.
 _NEAR = 1e-9
 
 #: Leading terms of a watched quantity that may be zero where a step begins, as at rest under a load t^4.

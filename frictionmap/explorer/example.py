@@ -27,7 +27,8 @@ def example_cell(view: View, follower: Follower) -> tuple[float, float] | None:
 
         classes = unloaded.solve(view, piece, follower)["classes"]
     else:
-        classes = classes_of(solve_piece(view, quantities_of(view)[:1], piece, follower), ())[1]["classes"]
+        found = solve_piece(view, quantities_of(view)[:1], piece, follower, searched=False)
+        classes = classes_of(found, ())[1]["classes"]
     axes = view.axes(columns, rows)
     own = (range(ONE, MORE + 1), (UNCOUNTED,), (CONTINUOUS, ONE_WAY))
     for kind in EXAMPLES if view.unloaded else own:

@@ -20,12 +20,14 @@ _MOST_MARKS = 200
 
 
 def solve_piece(
-    view: View, wanted: Sequence[CellQuantity], piece: Piece, follower: Follower
+    view: View, wanted: Sequence[CellQuantity], piece: Piece, follower: Follower, searched: bool = True
 ) -> dict[str, np.ndarray]:
     """The cells of a piece, (columns, rows), as `sweep` gives them, and over its columns the boundaries.
 
     `regime`, `stops_per_cycle`, in its place slips, and the quantities are those of the contact that is
     shown; all contacts together have no number of stops.
+
+    searched : whether boundaries that take a search are wanted
     """
     piece.check()
     view.check()
@@ -34,7 +36,9 @@ def solve_piece(
     by, k = counted_of(view).variable, view.shown
     asked = (quantity.output for quantity in wanted if quantity.output)
     names = tuple(dict.fromkeys((*filter(None, (by,)), *asked)))
-    solved, limits = view.engine.cells(axes, names, view.solver, None, follower.progress, follower.watch)
+    solved, limits = view.engine.cells(
+        axes, names, view.solver, None, follower.progress, follower.watch, searched
+    )
     found = {name: _shown_values(name, solved[name][0], k) for name in names}  # of the only mu
     found["regime"] = solved["regime"][0] if k is None else solved["contact_regime"][0, ..., k]
     if by:

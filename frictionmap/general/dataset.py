@@ -118,14 +118,17 @@ def mass_coordinates(system: System) -> dict[str, xr.Variable]:
 
 def cell_arrays(
     system: System, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver,
-    threads: int | None, progress: Progress | None, watch: Watch | None,
+    threads: int | None, progress: Progress | None, watch: Watch | None, searched: bool = True,
 ) -> tuple[dict[str, np.ndarray], Boundaries]:  # fmt: skip
-    """Outputs over the axes mu, r and beta, those of contacts (n_mu, n_r, n_beta, N), and the boundaries."""
+    """Outputs over the axes mu, r and beta, those of contacts (n_mu, n_r, n_beta, N), and the boundaries.
+
+    searched : see `find_boundaries`
+    """
     general = general_of(system)
     masses, further = any(is_of_masses(name) for name in names), wants_further(system, names)
     placed = any(depends_on_places(name, general) for name in names)
     threads = checks.threads(threads)
-    limits = find_boundaries(system, axes["r"], axes["mu"], threads, watch)
+    limits = find_boundaries(system, axes["r"], axes["mu"], threads, watch, searched=searched)
     cells = solve_cells(
         system, axes, limits.beta_stick, solver, threads, progress, watch, masses, placed, further
     )

@@ -13,7 +13,7 @@ from ..datasets.variables import coordinate, label_variable
 from ..model.general import ContactSystem
 from ..model.settings import HARMONICS, RECORDED, Solver
 from ..model.system import System
-from .boundaries import find_boundaries
+from .boundaries import Boundaries, find_boundaries
 from .cycle import cycle_values
 from .dataset import (
     boundary_variables,
@@ -116,8 +116,8 @@ def contact_trace(name: str, values: np.ndarray, contacts: int) -> xr.Variable:
 
 def general_response(
     system: System, r: float, beta: float, mu: float, solver: Solver, points: int
-) -> xr.Dataset:
-    """Compute one steady state of a general system in time; see `response`.
+) -> tuple[xr.Dataset, Boundaries]:
+    """Compute one steady state of a general system in time, see `response`, and the boundaries there.
 
     An irregular motion has the comment on it among its attributes.
     """
@@ -167,4 +167,4 @@ def general_response(
     if not steps.period:
         followed = int(np.ceil(steps.cycles))
         ds.attrs["comment"] = EXCERPT.format(shown=steps.shown, followed=followed)
-    return ds
+    return ds, limits

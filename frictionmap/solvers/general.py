@@ -11,7 +11,7 @@ from ..general.problem import least_ratio
 from ..jobs import Progress, Watch
 from ..model.settings import CurveSettings, Solver
 from ..model.sizes import Sizes, Wanted
-from .interface import FollowingEngine, Limits
+from .interface import FollowingEngine, Limits, Motion, traced_motion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -78,13 +78,13 @@ class GeneralEngine(FollowingEngine):
 
     def cells(
         self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
-        progress: Progress | None, watch: Watch | None,
+        progress: Progress | None, watch: Watch | None, searched: bool = True,
     ) -> tuple[dict[str, np.ndarray], Limits]:  # fmt: skip
         from ..general.dataset import cell_arrays
 
         self.check_static(axes["mu"])
         wanted = tuple(dict.fromkeys(("regime", "contact_regime", *names)))
-        found, limits = cell_arrays(self.system, axes, wanted, solver, threads, progress, watch)
+        found, limits = cell_arrays(self.system, axes, wanted, solver, threads, progress, watch, searched)
         return found, _limits(limits)
 
     def curves(
@@ -104,7 +104,14 @@ class GeneralEngine(FollowingEngine):
     def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
         from ..general.response import general_response
 
-        return general_response(self.system, r, beta, mu, solver, points)
+        return general_response(self.system, r, beta, mu, solver, points)[0]
+
+    def traced(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> Motion:
+        """Without a second search for the boundaries."""
+        from ..general.response import general_response
+
+        ds, found = general_response(self.system, r, beta, mu, solver, points)
+        return traced_motion(ds, _limits(found))
 
     @property
     def sizes(self) -> tuple[str, ...]:

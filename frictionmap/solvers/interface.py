@@ -46,6 +46,17 @@ class Motion(NamedTuple):
     comment: str
 
 
+def traced_motion(ds: "xr.Dataset", limits: Limits) -> Motion:
+    """A steady state as arrays, from the dataset of `response`."""
+    several = "contact" in ds.dims
+    values = {
+        str(name): one.values if several or name not in OF_CONTACTS else one.values[np.newaxis]
+        for name, one in ds.variables.items()
+    }
+    values.setdefault("contact_regime", values["regime"][np.newaxis])  # of the only one
+    return Motion(values, limits, ds.attrs.get("comment", ""))
+
+
 class Engine(ABC):
     """Answers about one system.
 
@@ -136,9 +147,12 @@ class Engine(ABC):
     @abstractmethod
     def cells(
         self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
-        progress: Progress | None, watch: Watch | None,
+        progress: Progress | None, watch: Watch | None, searched: bool = True,
     ) -> tuple[dict[str, np.ndarray], Limits]:  # fmt: skip
-        """Arrays of these outputs and of `regime` and `contact_regime` over all cells, and the boundaries."""
+        """Arrays of these outputs and of `regime` and `contact_regime` over all cells, and the boundaries.
+
+        searched : whether boundaries are wanted that take a search; else those of `known_limits` are enough
+        """
 
     @abstractmethod
     def curves(
@@ -160,14 +174,7 @@ class Engine(ABC):
     def traced(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> Motion:
         """One steady state in time as arrays, see `motion`."""
         ds = self.motion(r, beta, mu, solver, points)
-        several = "contact" in ds.dims
-        values = {
-            str(name): one.values if several or name not in OF_CONTACTS else one.values[np.newaxis]
-            for name, one in ds.variables.items()
-        }
-        values.setdefault("contact_regime", values["regime"][np.newaxis])  # of the only one
-        limits = self.limits(np.array([r]), np.array([mu]))
-        return Motion(values, limits, ds.attrs.get("comment", ""))
+        return traced_motion(ds, self.limits(np.array([r]), np.array([mu])))
 
     @property
     @abstractmethod

@@ -81,7 +81,7 @@ class PhasesEngine(FollowingEngine):
 
     def cells(
         self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
-        progress: Progress | None, watch: Watch | None,
+        progress: Progress | None, watch: Watch | None, searched: bool = True,
     ) -> tuple[dict[str, np.ndarray], Limits]:  # fmt: skip
         from ..phases.dataset import solve_cells
 

@@ -109,7 +109,7 @@ class SingleEngine(Engine):
 
     def cells(
         self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
-        progress: Progress | None, watch: Watch | None,
+        progress: Progress | None, watch: Watch | None, searched: bool = True,
     ) -> tuple[dict[str, np.ndarray], Limits]:  # fmt: skip
         """Without labels, whose library takes longer to import than a page to show its first map."""
         from ..single.maps import solve_map

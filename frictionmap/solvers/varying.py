@@ -14,7 +14,7 @@ from ..jobs import Job, Progress, Watch, run_jobs
 from ..model.settings import CurveSettings, Solver
 from ..model.sizes import Sizes, Wanted
 from .general import GeneralEngine
-from .interface import Limits
+from .interface import Limits, Motion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -108,10 +108,10 @@ class VaryingEngine(GeneralEngine):
 
     def cells(
         self, axes: Mapping[str, np.ndarray], names: Sequence[str], solver: Solver, threads: int | None,
-        progress: Progress | None, watch: Watch | None,
+        progress: Progress | None, watch: Watch | None, searched: bool = True,
     ) -> tuple[dict[str, np.ndarray], Limits]:  # fmt: skip
         def ask(engine: GeneralEngine, one: np.ndarray) -> tuple[dict[str, np.ndarray], Limits]:
-            return engine.cells({**axes, "r": one}, names, solver, 1, None, None)
+            return engine.cells({**axes, "r": one}, names, solver, 1, None, None, searched)
 
         parts = self._on_threads(axes["r"], ask, threads, progress, watch)
         cells = {name: np.concatenate([part[name] for part, _ in parts], axis=1) for name in parts[0][0]}
@@ -128,6 +128,9 @@ class VaryingEngine(GeneralEngine):
 
     def motion(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> "xr.Dataset":
         return self._at(r).motion(r, beta, mu, solver, points)
+
+    def traced(self, r: float, beta: float, mu: float, solver: Solver, points: int) -> Motion:
+        return self._at(r).traced(r, beta, mu, solver, points)
 
     def sizes_on_grid(
         self, wanted: Wanted, axes: dict[str, np.ndarray], solver: Solver, threads: int, watch: Watch | None

@@ -174,7 +174,7 @@ def regime_changes(
     coarse = {"mu": np.array([mu]), "r": r, "beta": beta}
     settings = replace(solver, outputs=("regime",))
     own, other = (
-        engine_of(one).cells(coarse, ("regime",), settings, threads, None, watch)[0]["regime"]
+        engine_of(one).cells(coarse, ("regime",), settings, threads, None, watch, searched=False)[0]["regime"]
         for one in (system, finer)
     )
     changed = (own != other) & (own != UNRESOLVED) & (other != UNRESOLVED)

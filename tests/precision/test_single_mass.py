@@ -111,7 +111,7 @@ def fill_tables(problem, row, single):
 def solve_by_tables(problem, row, single, beta, memory, record):
     """What `solve_single` returns."""
     problem, row, single = packed(problem), packed(row), packed(single)
-    return solve_single(problem, row, single, beta, packed(memory), packed(record))
+    return solve_single(problem, row, single, beta, packed(memory), packed(record), 0)
 
 
 @pytest.mark.plain

@@ -47,7 +47,9 @@ from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES
 from .return_map import copy_motion, copy_state, from_rest, steady_period
 from .series import Friction
 from .steady import (
+    AT_ZERO,
     AVERAGED,
+    LED,
     NO_REPEAT,
     REPEATS,
     Workspace,
@@ -357,6 +359,12 @@ def _begin_ahead(beta, trail, memory):
 
 
 @kernel
+def _where(grid):
+    """Where contacts at rest are, see `solve_from`."""
+    return LED if grid.places else AT_ZERO
+
+
+@kernel
 def _solve_cell(problem, grid, m, i, b, friction, workspace, trail):
     """Find the steady state of a cell: from where the last cells point, if that leads to it, or from rest.
 
@@ -377,13 +385,15 @@ def _solve_cell(problem, grid, m, i, b, friction, workspace, trail):
     if trail.count[0] > 0 and is_unique(problem, friction):
         _begin_ahead(grid.beta[i, b], trail, memory)
         found, halves, multiplier = solve_from(
-            problem, friction, state, grid.cycles, grid.tolerance, workspace, RANGES, True
+            problem, friction, state, grid.cycles, grid.tolerance, workspace, RANGES, _where(grid), True
         )
         if found.status == REPEATS and not multiplier >= _ISOLATED:
             return found, halves, multiplier
         _set_friction(grid, m, i, b, friction)
     from_rest(problem, row, friction, state, workspace.motion, memory, workspace.record, NOTHING)
-    return solve_from(problem, friction, state, grid.cycles, grid.tolerance, workspace, RANGES, True)
+    return solve_from(
+        problem, friction, state, grid.cycles, grid.tolerance, workspace, RANGES, _where(grid), False
+    )
 
 
 @kernel

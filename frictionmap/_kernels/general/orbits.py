@@ -50,6 +50,9 @@ MEASURED = 1e-12
 #: two states that are rounded alike, see `return_map.round_state`.  `measure` looks after it.
 _LAST = 1e-9
 
+#: A step below this is due to the rounding of a state, or leads nearer than that.
+NEARBY = 1e-4
+
 #: A distance that does not shrink is that of rounding errors, once, below this.
 _ROUNDED = 1e-7
 

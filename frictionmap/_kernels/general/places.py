@@ -527,6 +527,13 @@ def keep_orbit_anew(problem, friction, halves, tolerance, bits, workspace):
     return kept, cycles + 0.5 * halves
 
 
+@kernel
+def hold_orbit(friction, memory, places):
+    """Go to the steady state that was kept, its contacts at rest held whatever their force."""
+    _lift_limits(friction, places)
+    copy_motion(places.orbit, places.senses, memory.start, memory.senses)
+
+
 @late_kernel((bool, float))
 def settle_places(problem, friction, halves, cycles, workspace):
     """Find the steady state with the places that the motion from `memory.start` leads to.
@@ -550,8 +557,7 @@ def settle_places(problem, friction, halves, cycles, workspace):
         problem, friction, halves, cycles, _SAFETY if slide > 0 else 1.0, workspace
     )
     _unload(problem, friction, places)
-    _lift_limits(friction, places)
-    copy_motion(places.orbit, places.senses, memory.start, memory.senses)
+    hold_orbit(friction, memory, places)
     _move(problem, memory, places)
     return known, followed
 

@@ -277,6 +277,15 @@ def largest_difference(row, senses, state, other):
 
 
 @kernel
+def is_motion(row, memory, state, senses):
+    """Whether the state in `memory.start` is this one, with this pattern."""
+    for j in range(senses.size):
+        if memory.senses[j] != senses[j]:
+            return False
+    return largest_difference(row, senses, memory.start, state) == 0.0
+
+
+@kernel
 def return_distance(problem, row, memory):
     """Largest change of the state, over its size; infinite if the pattern changed."""
     for j in range(memory.senses.size):

@@ -12,10 +12,10 @@ from ..compiler import inner_kernel, kernel, late_kernel
 from ..compiler.vectors import LANES, LEADING, filled, least, load, mask_above, most, store
 from .counts import COUNT_ROWS, MOVED, NEAREST_STOP, STOPS, STUCK, TURNS
 from .crossings import NONE, approach, slope_at, value_at
-from .orbits import LARGEST, MEASURED, radius_of_two
+from .orbits import LARGEST, MEASURED, NEARBY, radius_of_two
 from .problem import SIZE, TERMS, WIDTH, H, P, Q
 from .record import LEAST_SLIP, OF_FRICTION, clear_record, include, mirror
-from .return_map import base_halves
+from .return_map import base_halves, raster, rounded
 from .single_tables import (
     CHI,
     DELTA,
@@ -52,6 +52,9 @@ _CERTAIN = 1e-3
 
 #: Another step is taken unless the error is so much less than MEASURED, or no longer decreases.
 _SURELY = 0.02
+
+#: States that are rounded again after the first one, at most, see `steady.find_from_rounded`.
+_MOST_BEGUN = 2
 
 _WATCHED = 0  # row of the scratch
 
@@ -391,8 +394,51 @@ def _keep_motion(problem, base, beta, start, sense, single, memory, record):
         mirror(record)
 
 
+@kernel
+def _rounded_start(single, z, p, bits):
+    """(q, q') of the state (z, z') at the section, rounded as by `round_state`; not, for 0 bits."""
+    chi = single.numbers[CHI]
+    q, v = (z + single.numbers[WALL]) / chi, (p + single.numbers[WALL_RATE]) / chi
+    if bits > 0:
+        step = raster(max(abs(q), abs(v)), bits)
+        q, v = rounded(q, step), rounded(v, step)
+    return q, v
+
+
+@kernel
+def _in_contact(single, start):
+    """(z, z') of a state (q, q') at the section."""
+    chi = single.numbers[CHI]
+    return chi * start[0] - single.numbers[WALL], chi * start[1] - single.numbers[WALL_RATE]
+
+
+@kernel
+def _next_state(single, sign, z, p, sense, end, nearer):
+    """(z, z') and sense of the state that is tried after one that does not return, and whether it is that of
+    Newton's method; else the motion itself approaches the steady state.
+
+    Parameters
+    ----------
+    single : Single, with the state and its derivatives on return
+    sign : that of the return
+    z, p, sense : the state at the section
+    end : sense on return
+    nearer : whether the state returns nearer to itself than the last one
+    """
+    state = single.state
+    off_z, off_p = sign * state[Z] - z, sign * state[RATE] - p
+    a, b = sign * state[Z_BY_Z], sign * state[Z_BY_RATE]
+    c, d = sign * state[RATE_BY_Z], sign * state[RATE_BY_RATE]
+    determinant = (1.0 - a) * (1.0 - d) - b * c
+    if end == sense and nearer and determinant != 0.0:
+        z += ((1.0 - d) * off_z + b * off_p) / determinant
+        p += (c * off_z + (1.0 - a) * off_p) / determinant
+        return z, p, sense, True
+    return sign * state[Z], sign * state[RATE], end, False
+
+
 @late_kernel((bool, float, float))
-def solve_single(problem, row, single, beta, memory, record):
+def solve_single(problem, row, single, beta, memory, record, bits):
     """Find and measure the steady state for mu = 1, from the state in `memory.start`.
 
     Parameters
@@ -400,47 +446,45 @@ def solve_single(problem, row, single, beta, memory, record):
     problem, row, single : Problem, Row, Single with the tables of this row
     beta : friction
     memory, record : Return, Record; where the state is found they are as `steady.measure` leaves them
+    bits : 0; or it is found from the state that it is rounded to, see `steady.find_from_rounded`
 
     Returns
     -------
     (found, cycles, multiplier) : whether it was found; periods followed; largest modulus of the multipliers
         over a period of the load
     """
-    base = base_halves(problem)
+    base, state = base_halves(problem), single.state
     sign = 1.0 - 2.0 * (base % 2)
-    chi = single.numbers[CHI]
-    z = chi * memory.start[Q, 0] - single.numbers[WALL]
-    p = chi * memory.start[P, 0] - single.numbers[WALL_RATE]
-    sense = memory.senses[0]
-    size = row.numbers[SIZE] * abs(chi)
-    last = math.inf
-    state = single.state
+    z, p = _in_contact(single, (memory.start[Q, 0], memory.start[P, 0]))
+    start = _rounded_start(single, z, p, bits)
+    if bits > 0:
+        z, p = _in_contact(single, start)
+    sense, size = memory.senses[0], row.numbers[SIZE] * abs(single.numbers[CHI])
+    last, begun, count = math.inf, 1, 0
     for count in range(1, _MOST_RETURNS + 1):
         if not sense * p > 0.0:  # a stop, or a start that was moved beyond the end of its slide
             sense, p = 0, 0.0
         if not max(abs(z), abs(p)) <= LARGEST * size:
-            return False, 0.5 * base * count, math.nan
+            break
         end, decided = _return(
             single, row.numbers[H], base * row.intervals[0], (z, p), sense, beta, memory, record
         )
         end = -end if base == 1 else end
         if not decided or memory.counts[MOVED, 0] == 0.0:
-            return False, 0.5 * base * count, math.nan
-        off_z, off_p = sign * state[Z] - z, sign * state[RATE] - p
-        a, b = sign * state[Z_BY_Z], sign * state[Z_BY_RATE]
-        c, d = sign * state[RATE_BY_Z], sign * state[RATE_BY_RATE]
-        multiplier = radius_of_two(a, b, c, d)
-        off = max(abs(off_z), abs(off_p)) / max(size, abs(z), abs(p))
+            break
+        multiplier = radius_of_two(state[Z_BY_Z], state[Z_BY_RATE], state[RATE_BY_Z], state[RATE_BY_RATE])
+        off = max(abs(sign * state[Z] - z), abs(sign * state[RATE] - p)) / max(size, abs(z), abs(p))
         enough = MEASURED * min(1.0, abs(1.0 - multiplier))
-        if end == sense and (off <= _SURELY * enough or enough >= off >= 0.5 * last):
+        returns = end == sense and (off <= _SURELY * enough or enough >= off >= 0.5 * last)
+        if not returns:
+            z, p, sense, stepped = _next_state(single, sign, z, p, sense, end, off < last)
+            last = off if stepped else math.inf
+        if bits > 0 and begun <= _MOST_BEGUN and (returns or (begun == 1 and off <= NEARBY)):
+            again = _rounded_start(single, z, p, bits)
+            if again != start:
+                start, begun, last, returns = again, begun + 1, math.inf, False
+                z, p = _in_contact(single, start)
+        if returns:
             _keep_motion(problem, base, beta, (z, p), sense, single, memory, record)
             return True, 0.5 * base * count, multiplier if base == 2 else multiplier * multiplier
-        determinant = (1.0 - a) * (1.0 - d) - b * c
-        if end == sense and off < last and determinant != 0.0:
-            last = off
-            z += ((1.0 - d) * off_z + b * off_p) / determinant
-            p += (c * off_z + (1.0 - a) * off_p) / determinant
-        else:  # the motion itself approaches the steady state
-            last = math.inf
-            z, p, sense = sign * state[Z], sign * state[RATE], end
-    return False, 0.5 * base * _MOST_RETURNS, math.nan
+    return False, 0.5 * base * count, math.nan

@@ -29,6 +29,7 @@ from .orbits import (
     AVERAGED,
     CHATTERS,
     MEASURED,
+    NEARBY,
     NO_REPEAT,
     REPEATS,
     RETURNED,
@@ -44,6 +45,7 @@ from .places import (
     Places,
     fill_flexibility,
     find_rests,
+    hold_orbit,
     keep_orbit,
     keep_orbit_anew,
     make_places,
@@ -69,6 +71,7 @@ from .return_map import (
     copy_motion,
     from_rest,
     go_round,
+    is_motion,
     make_return,
     return_distance,
     round_state,
@@ -83,6 +86,13 @@ from .single_tables import Single, fits_row, forget_row, make_single
 #: Measurements until the error is below MEASURED; and all, until the state returns and no contact drifts.
 _MOST_REPEATED = 2
 _MOST_MEASURED = 10
+
+#: Where contacts at rest are: anywhere; at the place 0 (for mu = 1); where the motion leads from its
+#: start.  In the last two cases the bits of a steady state do not depend on the way to it (for mu = 1).
+ANYWHERE, AT_ZERO, LED = 0, 1, 2
+
+#: Attempts to find a steady state from the one that it is rounded to.
+_MOST_ROUNDED = 3
 
 #: Attempts of Newton's method after which contacts that creep are held.
 _CREEPS = 6
@@ -381,35 +391,91 @@ def is_unique(problem, friction):
     return unique
 
 
-@late_kernel(float)
-def _find_anew(problem, friction, halves, tolerance, workspace):
-    """Find a steady state anew from its rounded state; the periods followed.
+@kernel
+def _is_rounded_to(problem, row, friction, bits, memory, places):
+    """Whether the state in `memory.start` is rounded to the one in `places.orbit`; else it is rounded, and
+    stays in `memory.end` as it was.
+    """
+    copy_motion(memory.start, memory.senses, memory.end, memory.end_senses)
+    round_state(problem, row, friction, memory, bits)
+    same = is_motion(row, memory, places.orbit, places.senses)
+    if same:
+        take_end(memory)
+    return same
+
+
+@late_kernel((bool, float))
+def find_from_rounded(problem, friction, tolerance, bits, workspace):
+    """Find the steady state near the one in `memory.start` from the state that it is itself rounded to.
+
+    The first steps show what it is rounded to, unless it is next to the edge of that.
 
     Parameters
     ----------
-    problem, friction : Problem, Friction
-    halves : half periods after which it returns
-    tolerance : see `find`
-    workspace : Workspace; the steady state is in `workspace.ring`, at the end in `workspace.memory.start`
+    problem, friction, tolerance, workspace : see `find`; if it is not found, `memory.start` is another state
+    bits : see `round_state`
+
+    Returns
+    -------
+    (found, cycles) : whether it was found; periods followed
     """
-    row, motion, memory, ring = workspace.row, workspace.motion, workspace.memory, workspace.ring
-    spent = 0.0
-    for bits in BITS:
-        take_orbit(memory, ring)
-        round_state(problem, row, friction, memory, bits)
-        if stop_contacts(problem, row, motion, memory):
-            status, cycles = newton(
-                problem, row, friction, halves, tolerance, motion, memory, workspace.record
-            )
+    row, motion, memory, places = workspace.row, workspace.motion, workspace.memory, workspace.places
+    halves, spent, goal, rounded = unique_halves(problem), 0.0, NEARBY, False
+    round_state(problem, row, friction, memory, bits)
+    for _ in range(_MOST_ROUNDED):
+        copy_motion(memory.start, memory.senses, places.orbit, places.senses)
+        if not stop_contacts(problem, row, motion, memory):
+            return False, spent
+        for last in (goal, tolerance):
+            status, cycles = newton(problem, row, friction, halves, last, motion, memory, workspace.record)
             spent += cycles
-            if status == REPEATS:
-                return spent
-    take_orbit(memory, ring)
-    return spent
+            if status != REPEATS:
+                return False, spent
+            rounded = _is_rounded_to(problem, row, friction, bits, memory, places)
+            if last == tolerance or not rounded:
+                break
+        if rounded:
+            return True, spent
+        goal = tolerance
+    take_end(memory)
+    return True, spent
+
+
+@kernel
+def _find_anew(problem, friction, tolerance, workspace, by_tables, attempts):
+    """Find the steady state near the one in `memory.start`, with bits that do not depend on the way to it.
+
+    Parameters
+    ----------
+    problem, friction, tolerance, workspace : see `find`
+    by_tables : whether the tables of one mass can be used
+    attempts : how many of BITS are tried beside them
+
+    Returns
+    -------
+    (found, cycles, multiplier) : whether it was found, else `memory.start` is as before; periods followed; of
+        a state that the tables measured, see `solve_single`, else NaN
+    """
+    row, memory, ring, spent = workspace.row, workspace.memory, workspace.ring, 0.0
+    copy_motion(memory.start, memory.senses, ring.orbit, ring.orbit_senses)
+    if by_tables:
+        found, spent, multiplier = solve_single(
+            problem, row, workspace.single, friction.kinetic[0], memory, workspace.record, BITS[0]
+        )
+        if found:
+            return True, spent, multiplier
+        take_orbit(memory, ring)
+    for attempt in range(attempts):
+        found, cycles = find_from_rounded(problem, friction, tolerance, BITS[attempt], workspace)
+        spent += cycles
+        if found:
+            return True, spent, math.nan
+        take_orbit(memory, ring)
+    return False, spent, math.nan
 
 
 @late_kernel(Steady)
-def _settle(problem, friction, state, found, cycles, tolerance, workspace):
+def _settle(problem, friction, state, found, cycles, tolerance, workspace, settled):
     """Give the contacts at rest the places to which the motion leads from its start.
 
     Parameters
@@ -419,6 +485,7 @@ def _settle(problem, friction, state, found, cycles, tolerance, workspace):
     found : Steady, the one in `workspace.memory.start`
     cycles, tolerance : see `find`
     workspace : Workspace after `find_rests`
+    settled : AT_ZERO or LED, see `solve_from`
 
     Returns
     -------
@@ -446,6 +513,9 @@ def _settle(problem, friction, state, found, cycles, tolerance, workspace):
         kept = keep_orbit(problem, friction, halves, workspace)
     if not kept:
         return Steady(NO_REPEAT, 0, spent)
+    if settled == AT_ZERO:
+        hold_orbit(friction, memory, places)
+        return Steady(REPEATS, halves, spent)
     from_rest(problem, row, friction, state, motion, memory, record, NOTHING)
     known, more = settle_places(problem, friction, halves, cycles, workspace)
     return Steady(REPEATS if known else NO_REPEAT, halves, spent + more)
@@ -462,14 +532,45 @@ def _locate(problem, friction, cycles, tolerance, workspace, by_tables):
     """
     row, memory, record = workspace.row, workspace.memory, workspace.record
     if by_tables:
-        located, spent, _ = solve_single(problem, row, workspace.single, friction.kinetic[0], memory, record)
+        located, spent, _ = solve_single(
+            problem, row, workspace.single, friction.kinetic[0], memory, record, 0
+        )
         if located:
             return Steady(REPEATS, unique_halves(problem), spent)
     return find(problem, friction, cycles, tolerance, workspace)
 
 
 @kernel
-def solve_from(problem, friction, state, cycles, tolerance, workspace, what, settled):
+def _settled(problem, friction, state, found, cycles, tolerance, workspace, settled, by_tables, anew):
+    """Give a steady state the places of its contacts at rest, and bits that do not depend on the way to it.
+
+    Parameters
+    ----------
+    problem, friction, state, cycles, tolerance, workspace, settled : see `solve_from`
+    found : Steady, the one in `workspace.memory.start`
+    by_tables : whether the tables of one mass can be used
+    anew : whether it was found by `_find_anew`
+
+    Returns
+    -------
+    Steady, multiplier : the latter if the tables measured it, else NaN
+    """
+    row, memory, ring, places = workspace.row, workspace.memory, workspace.ring, workspace.places
+    unique = is_unique(problem, friction)
+    copy_motion(memory.start, memory.senses, ring.orbit, ring.orbit_senses)
+    if not unique:  # the last way was not over the whole period
+        go_round(problem, row, friction, found.halves, workspace.motion, memory, workspace.record, False)
+    restore_friction(friction, places.limits)
+    if not problem.loops and find_rests(memory, places) > 0 and not is_free(problem):
+        return _settle(problem, friction, state, found, cycles, tolerance, workspace, settled), math.nan
+    if anew or not unique:
+        return found, math.nan
+    _, spent, multiplier = _find_anew(problem, friction, tolerance, workspace, by_tables, len(BITS))
+    return Steady(REPEATS, found.halves, found.cycles + spent), multiplier
+
+
+@kernel
+def solve_from(problem, friction, state, cycles, tolerance, workspace, what, settled, near):
     """Find and measure the steady state that the motion from a state at tau = 0 reaches.
 
     It is looked for from the state in `workspace.memory.start`, on which it does not depend for mu = 1.
@@ -481,36 +582,35 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
     cycles, tolerance : see `find`
     workspace : Workspace after `begin_row`
     what : see `measure`
-    settled : whether the places of contacts at rest are wanted, and bits that do not depend on the way; those
-        of a free structure are arbitrary
+    settled : ANYWHERE, AT_ZERO or LED, where contacts at rest are; those of a free structure are anywhere
+    near : whether the state in `workspace.memory.start` is likely to be near the steady one
 
     Returns
     -------
     Steady, half periods measured, multiplier
     """
-    row, memory, record = workspace.row, workspace.memory, workspace.record
+    row, places = workspace.row, workspace.places
     base, unique = unique_halves(problem), is_unique(problem, friction)
     tables = what == RANGES and unique and not has_law(problem)
     by_tables = tables and fits_row(problem, row, workspace.single, base)
-    keep_friction(friction, workspace.places.limits)
-    found = _locate(problem, friction, cycles, tolerance, workspace, by_tables)
-    if found.status == REPEATS and settled:
-        copy_motion(memory.start, memory.senses, workspace.ring.orbit, workspace.ring.orbit_senses)
-        if not unique:  # the last way was not over the whole period
-            go_round(problem, row, friction, found.halves, workspace.motion, memory, record, False)
-        restore_friction(friction, workspace.places.limits)
-        if not problem.loops and find_rests(memory, workspace.places) > 0 and not is_free(problem):
-            found = _settle(problem, friction, state, found, cycles, tolerance, workspace)
-        elif unique:
-            if by_tables:
-                round_state(problem, row, friction, memory, BITS[0])
-                solved, spent, multiplier = solve_single(
-                    problem, row, workspace.single, friction.kinetic[0], memory, record
-                )
-                if solved:
-                    return Steady(REPEATS, base, found.cycles + spent), base, multiplier
-            spent = _find_anew(problem, friction, found.halves, tolerance, workspace)
-            found = Steady(REPEATS, found.halves, found.cycles + spent)
+    keep_friction(friction, places.limits)
+    anew, spent, multiplier = False, 0.0, math.nan
+    if near and settled != ANYWHERE and unique:
+        anew, spent, multiplier = _find_anew(
+            problem, friction, tolerance, workspace, by_tables, 0 if by_tables else 1
+        )
+    if anew and by_tables:
+        return Steady(REPEATS, base, spent), base, multiplier
+    found = Steady(REPEATS, base, spent)
+    if not anew:
+        found = _locate(problem, friction, cycles, tolerance, workspace, by_tables)
+        found = Steady(found.status, found.halves, found.cycles + spent)
+    if found.status == REPEATS and settled != ANYWHERE:
+        found, multiplier = _settled(
+            problem, friction, state, found, cycles, tolerance, workspace, settled, by_tables, anew
+        )
+        if not math.isnan(multiplier):
+            return found, base, multiplier
     if found.status != REPEATS:
         return found, 0, math.nan
     halves, multiplier = measure(problem, friction, found.halves, workspace, what)
@@ -539,7 +639,7 @@ def _one(problem, i, friction, state, limits, workspace, settled):
     fit_row(problem, i, friction, workspace)
     from_rest(problem, row, friction, state, motion, memory, record, NOTHING)
     found, halves, multiplier = solve_from(
-        problem, friction, state, cycles, tolerance, workspace, STEPS, settled
+        problem, friction, state, cycles, tolerance, workspace, STEPS, LED if settled else ANYWHERE, False
     )
     if found.status == REPEATS:
         return found, halves, multiplier

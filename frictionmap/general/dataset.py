@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
+from .._kernels.general.fill import NO_PLACES
 from ..datasets.labels import LABELS, PER_CONTACT, attributes, with_contact
 from ..datasets.variables import coordinate, label_variable
 from ..errors import InputError
@@ -17,7 +18,7 @@ from ..model.system import System
 from .boundaries import Boundaries, find_boundaries
 from .maps import solve_cells
 from .observed import wants_further
-from .outputs import COUNTERPARTS, OF_STARTS, TABLE, depends_on_places, is_of_masses, is_wanted, output_values
+from .outputs import COUNTERPARTS, OF_STARTS, TABLE, is_of_masses, is_wanted, output_values, wanted_places
 from .problem import general_of
 
 #: Outputs with a dimension that is empty where no contact has a friction law, or without springs.
@@ -126,7 +127,7 @@ def cell_arrays(
     """
     general = general_of(system)
     masses, further = any(is_of_masses(name) for name in names), wants_further(system, names)
-    placed = any(depends_on_places(name, general) for name in names)
+    placed = wanted_places(names, general)
     threads = checks.threads(threads)
     limits = find_boundaries(system, axes["r"], axes["mu"], threads, watch, searched=searched)
     cells = solve_cells(
@@ -135,7 +136,7 @@ def cell_arrays(
     found = {name: output_values(name, system, cells) for name in names}
     if OF_STARTS in names and not cells.unique.all():
         other = replace(solver, start="rest" if solver.start == "moving" else "moving")
-        more = solve_cells(system, axes, limits.beta_stick, other, threads, None, watch, False, False)
+        more = solve_cells(system, axes, limits.beta_stick, other, threads, None, watch, False, NO_PLACES)
         found[OF_STARTS] |= output_values(OF_STARTS, system, more)
     return found, limits
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import regimes
 from .._kernels.compiler.lending import Memories, lent
-from .._kernels.general.fill import Cells, Grid, fill_rows, make_row_memory
+from .._kernels.general.fill import ALL_PLACES, NO_PLACES, Cells, Grid, fill_rows, make_row_memory
 from ..jobs import Job, Progress, Watch, run_counted
 from ..model.settings import Solver
 from ..model.system import System
@@ -46,7 +46,7 @@ def _put_stuck(system: System, r: np.ndarray, found: Cells) -> None:
 
 def solve_cells(
     system: System, axes: Mapping[str, np.ndarray], beta_stick: np.ndarray, solver: Solver, threads: int,
-    progress: Progress | None, watch: Watch | None, masses: bool, places: bool = True,
+    progress: Progress | None, watch: Watch | None, masses: bool, places: int = ALL_PLACES,
     further: bool = False,
 ) -> Cells:  # fmt: skip
     """Compute all cells of a grid.
@@ -60,7 +60,7 @@ def solve_cells(
     threads : number of threads
     progress, watch : as in `sweep`
     masses : whether displacements of the masses are wanted, after those in the contacts
-    places : whether displacements are wanted that depend on the places of contacts at rest
+    places : NO_PLACES, SOME_PLACES or ALL_PLACES, see `outputs.wanted_places`
     further : whether drifts, accelerations and the force on the base are, after those of the masses
     """
     mu, r = axes["mu"], axes["r"]
@@ -77,7 +77,7 @@ def solve_cells(
     stuck_from = np.where(proved[:, np.newaxis], np.stack(sticks_from, axis=1), many)
     starts = initial_states(system, problem, modal, solver.start)
     # the place of a free structure is arbitrary; that of contacts that close a loop is not looked for
-    settled = places and not general.free and not general.loop
+    settled = NO_PLACES if general.free or general.loop else places
     observed, alike = masses or further or has_residual(system), None
     outputs = observed_rows(system, modal, further)
     if unique.all() and "multiplier" not in solver.outputs:  # some deviations are not alike in all sectors

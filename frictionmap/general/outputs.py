@@ -4,13 +4,13 @@ Names, types, units and meanings are those of `datasets.labels`.  A map and a re
 from the `Cells` that kernels fill.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
 
 from .. import regimes
-from .._kernels.general.fill import NUMBERS, Cells
+from .._kernels.general.fill import ALL_PLACES, NO_PLACES, NUMBERS, SOME_PLACES, Cells
 from .._kernels.general.laws.kinds import ELASTIC, RIGID
 from ..datasets.labels import LABELS, PER_CONTACT
 from ..model.general import ContactSystem
@@ -180,6 +180,18 @@ def is_of_masses(name: str) -> bool:
 def depends_on_places(name: str, general: ContactSystem) -> bool:
     """Whether an output depends on the places of contacts at rest."""
     return bool(np.isin(laws_of(general), TABLE[name].placed).any())
+
+
+def wanted_places(names: Iterable[str], general: ContactSystem) -> int:
+    """In which cells outputs depend on the places of contacts at rest, see `fill.NO_PLACES`.
+
+    Where all contacts rest, the largest displacement in a rigid one is 0.  Where others move, they move about
+    the place that the contacts at rest leave to them.
+    """
+    some = [name for name in names if TABLE[name].placed]
+    if any(depends_on_places(name, general) for name in some):
+        return ALL_PLACES
+    return SOME_PLACES if some else NO_PLACES
 
 
 def output_values(name: str, system: System, cells: Cells) -> np.ndarray:

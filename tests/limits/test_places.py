@@ -112,6 +112,19 @@ def test_a_cell_does_not_depend_on_the_rest_of_the_grid(system):
             np.testing.assert_array_equal(cut[name].values, same[name].values, err_msg=name)
 
 
+@pytest.mark.parametrize("system", [two_masses(), two_masses(stiffness=5.0)])
+def test_outputs_do_not_depend_on_each_other(system):
+    """A contact that moves does so about the place that one at rest leaves to it."""
+    axes = [0.6, 1.6], np.linspace(0.1, 1.6, 16)
+    whole = fm.sweep(system, *axes, outputs=OUTPUTS)
+    rests = whole.contact_regime == PERMANENT_STICKING
+    assert (rests.any("contact") & ~rests.all("contact")).sum() > 3
+    for names in (("regime", "contact_amplitude"), ("regime", "stuck_fraction", "peak_to_peak")):
+        found = fm.sweep(system, *axes, outputs=names)
+        for name in (*names, "contact_regime", "status"):
+            np.testing.assert_allclose(found[name], whole[name], rtol=1e-13, atol=1e-13, err_msg=name)
+
+
 @pytest.mark.parametrize("beta", [1.21, 1.264375, 1.5, 1.7])
 def test_a_contact_that_sticks_is_where_its_friction_can_hold_it(beta):
     """One mass under two harmonics: from rest it slides until the load stays within the friction.

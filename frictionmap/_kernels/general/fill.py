@@ -83,6 +83,10 @@ NUMBERS = (
 _SEGMENTS = len(NUMBERS)
 
 
+#: Cells in which the places of contacts at rest are looked for: none, those in which others move, all.
+NO_PLACES, SOME_PLACES, ALL_PLACES = 0, 1, 2
+
+
 class Grid(NamedTuple):
     """Friction of a grid: kinetic friction of contact j is kinetic[j, 0] beta + kinetic[j, 1], ..."""
 
@@ -91,7 +95,7 @@ class Grid(NamedTuple):
     static: np.ndarray  # (n_mu, N, 2)
     stuck_from: np.ndarray  # (n_mu, n_r) index of the first cell that is proved to stick permanently
     starts: np.ndarray  # (n_r, 3, m) initial states, see `from_rest`
-    places: bool  # whether displacements are wanted that depend on the places of contacts at rest
+    places: int  # see NO_PLACES
     cycles: float
     tolerance: float
 
@@ -361,7 +365,7 @@ def _begin_ahead(beta, trail, memory):
 @kernel
 def _where(grid):
     """Where contacts at rest are, see `solve_from`."""
-    return LED if grid.places else AT_ZERO
+    return AT_ZERO if grid.places == NO_PLACES else LED
 
 
 @kernel
@@ -412,7 +416,7 @@ def _fill_rows(first, last, problem, grid, out, memory, cancel):
             continue
         begin_row(problem, i, workspace)
         trail.count[0] = 0
-        place = _UNKNOWN if grid.places else _STAYS
+        place = _UNKNOWN if grid.places == ALL_PLACES else _STAYS
         for b in range(grid.beta.shape[1]):
             if cancel[0] != 0:
                 return

@@ -23,7 +23,7 @@ from .pattern import (
     stop_exactly,
 )
 from .problem import SECTION, H, force_row, normal_row
-from .record import record_step
+from .record import NOTHING, keep_displacements, needs_ends, record_ends, record_step
 from .row import set_channels
 from .series import advance, expand, factor_held
 from .tangent import advance_tangent, hold_tangent, through_event, through_slip, watched_row
@@ -297,9 +297,15 @@ def follow(problem, row, friction, first, count, motion, box, counts, record, de
     forget_tables(problem, row, friction)
     if derive:
         hold_tangent(problem, row, motion)
-    glides = record.active[0] == 0 and can_glide(problem, row)
+    glides, recorded = needs_ends(problem, record) and can_glide(problem, row), record.active[0] != NOTHING
+    before, after = motion.event[_BEFORE], motion.event[_CHANGE]
     for interval in range(first, first + count):
+        if glides and recorded:
+            keep_displacements(problem, row, motion, interval, before)
         if glides and glide(problem, row, friction, interval, motion):
+            if recorded:
+                keep_displacements(problem, row, motion, interval + 1, after)
+                record_ends(problem, friction, motion, before, after, record)
             count_time(motion, counts, h)
             if derive:
                 advance_tangent(problem, row, motion, 1.0)

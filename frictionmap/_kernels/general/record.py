@@ -11,7 +11,7 @@ from .events import MOST, Events, list_step, make_events
 from .laws.contact import moves_one_way
 from .laws.kinds import has_force
 from .laws.speed import has_law
-from .problem import LONG, SIZE, TERMS, WIDTH, H, R, first_contact_row, force_row, varies
+from .problem import LONG, SIZE, TERMS, WIDTH, H, Q, R, first_contact_row, force_row, varies
 
 NOTHING, RANGES, STEPS, FORCES, EVENTS = 0, 1, 2, 3, 4
 
@@ -394,6 +394,46 @@ def keep_drift(problem, way, halves, record):
         if shift != 0.0:  # else the ranges of other structures keep their bits
             record.ranges[LOW, i] += shift
             record.ranges[HIGH, i] += shift
+
+
+@kernel
+def needs_ends(problem, record):
+    """Whether all that is recorded of an interval in which nothing happens follows from its ends."""
+    if record.active[0] == NOTHING:
+        return True
+    ends = record.active[0] == RANGES and record.masses.shape[0] == 0
+    for j in range(problem.spring.size):
+        ends = ends and moves_one_way(problem, j)
+    return ends
+
+
+@kernel
+def keep_displacements(problem, row, motion, interval, places):
+    """Fill the displacements in the contacts at the beginning of an interval of the load."""
+    modes, channels = problem.push.shape
+    load_at = interval % (2 * row.intervals[0]) * channels
+    for j in range(problem.spring.size):
+        places[j] = 0.0
+        for m in range(modes):
+            places[j] += problem.chi[j, m] * motion.state[Q, m]
+        for d in range(channels):
+            places[j] -= problem.base[j, d] * row.loads[load_at + d, 0]
+
+
+@kernel
+def record_ends(problem, friction, motion, before, after, record):
+    """Include an interval in which nothing happens, see `needs_ends`; normal loads are constant.
+
+    before, after : displacements in the contacts at its ends, see `keep_displacements`
+    """
+    for j in range(problem.spring.size):
+        include(record.ranges, j, before[j])
+        include(record.ranges, j, after[j])
+        if motion.sense[j] != 0:
+            way = after[j] - before[j]
+            record.distance[j] += abs(way)
+            record.slips[_PRESENT, j] += abs(way)
+            record.works[OF_FRICTION, j] += motion.sense[j] * friction.kinetic[j] * way
 
 
 @kernel

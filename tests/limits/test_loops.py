@@ -288,3 +288,19 @@ def test_a_loop_at_rest_on_moving_sectors():
     grounded = found.contact_peak_to_peak.values.ravel()[4:]
     assert found.peak_to_peak.values.ravel() == pytest.approx(grounded, rel=1e-12)
     assert grounded.min() > 1.0
+
+
+def test_forces_that_leave_their_limits_after_others_begin_to_slide():
+    """All contacts reach their limits together; the outer mass pulls the inner ones away only later."""
+    contacts = [
+        fm.Contact("fixed-wall", 2), fm.Contact("between-masses", [2, 3]), fm.Contact("fixed-wall", 1),
+        fm.Contact("between-masses", [1, 2]),
+    ]  # fmt: skip
+    system = fm.System(
+        contacts=contacts, mass_ratios=[1, 1, 1], stiffness_ratios=[1, 1, 1], damping_ratios=0.05,
+        load_mass=3,
+    )  # fmt: skip
+    names = ["status", "regime", "peak_to_peak"]
+    rest, moving = (fm.sweep(system, [1.3], [0.05], start=one, outputs=names) for one in ("rest", "moving"))
+    assert rest.status.item() == moving.status.item() == 0
+    assert rest.peak_to_peak.values == pytest.approx(moving.peak_to_peak.values, rel=1e-9)

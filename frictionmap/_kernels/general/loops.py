@@ -44,6 +44,9 @@ from .series import factor_held, solve_held
 #: Share of its own mobility that a contact has, at least, beside those that it is independent of.
 _INDEPENDENT = 1e-10
 
+#: Orders of rates that may decide, plus 1.
+_MOST_ORDERS = 7
+
 #: Steps to the forces, at most.
 _MOST_STEPS = 2000
 
@@ -327,9 +330,65 @@ def settle_contacts(problem, row, friction, tau, motion, box, forces, arrived, r
     return settle(problem, row, friction, tau, motion, box, arrived, released)
 
 
+@kernel
+def _is_flat(problem, friction, motion, j, order):
+    """Whether the terms of a force before this order, except the first one, are rounding errors."""
+    flat, at = True, force_row(problem, j)
+    for k in range(1, order):
+        flat = flat and abs(motion.series[at, k]) <= TOGETHER * friction.kinetic[j]
+    return flat
+
+
+@kernel
+def _fill_rates(problem, row, friction, motion, forces, x, order, box):
+    """Fill the rates of the forces of held contacts that have constraints, and the limits of the rates.
+
+    Parameters
+    ----------
+    problem, row, friction, motion, forces, x, box : see `release_in_loops`
+    order : of the rates: 1, or where those of lower orders decide nothing a higher one
+    """
+    contacts = motion.sense.size
+    for j in range(contacts):
+        box[PARTICIPATES, j] = 1.0 if motion.sense[j] == 0 else 0.0
+        box[LOWER, j], box[UPPER, j] = -math.inf, math.inf
+        at_limit = abs(forces[j]) >= friction.kinetic[j] * (1.0 - TOGETHER)
+        if at_limit and _is_flat(problem, friction, motion, j, order):
+            if forces[j] >= 0.0:
+                box[UPPER, j] = 0.0
+            if forces[j] <= 0.0:
+                box[LOWER, j] = 0.0
+        rate = 0.0
+        if motion.sense[j] == 0 and order == 1:
+            rate = slope_at(motion.series, force_row(problem, j), x)
+        elif motion.sense[j] == 0:
+            rate = motion.series[force_row(problem, j), order]
+        box[HOLDING, j] = rate
+        box[FORCE, j] = min(max(rate, box[LOWER, j]), box[UPPER, j])
+    for j in range(contacts):
+        box[FREE, j] = 0.0
+        for other in range(contacts):
+            box[FREE, j] += row.mobility[j, other] * box[HOLDING, other]
+    _fill_whole(problem, row, motion, box, True)
+
+
+@kernel
+def _decides_nothing(motion, box):
+    """Whether the pattern is the one before: all held contacts are, and the same ones have constraints."""
+    same = True
+    for j in range(motion.sense.size):
+        if box[PARTICIPATES, j] != 0.0:
+            was_idle = box[ORDER_MATTERS, j] != 0.0
+            same = same and motion.sense[j] == 0 and motion.idle[j] == was_idle
+    return same
+
+
 @late_kernel(bool)
 def release_in_loops(problem, row, friction, motion, forces, x, box):
     """Decide by rates what follows where a force reaches its limit, and none jumps.
+
+    A force that stays at its limit may leave it later than with its rate, where others begin to slide: a step
+    then begins with it, and rates of higher order decide.
 
     Parameters
     ----------
@@ -344,28 +403,22 @@ def release_in_loops(problem, row, friction, motion, forces, x, box):
     """
     contacts = motion.sense.size
     for j in range(contacts):
-        box[PARTICIPATES, j] = 1.0 if motion.sense[j] == 0 else 0.0
-        box[LOWER, j], box[UPPER, j] = -math.inf, math.inf
-        if abs(forces[j]) >= friction.kinetic[j] * (1.0 - TOGETHER):
-            if forces[j] >= 0.0:
-                box[UPPER, j] = 0.0
-            if forces[j] <= 0.0:
-                box[LOWER, j] = 0.0
-        rate = slope_at(motion.series, force_row(problem, j), x) if motion.sense[j] == 0 else 0.0
-        box[HOLDING, j] = rate
-        box[FORCE, j] = min(max(rate, box[LOWER, j]), box[UPPER, j])
+        box[ORDER_MATTERS, j] = 1.0 if motion.idle[j] else 0.0
+    for order in range(1, _MOST_ORDERS if x == 0.0 else 2):
+        _fill_rates(problem, row, friction, motion, forces, x, order, box)
+        if not _find_forces(problem, row, motion, box):
+            return False
+        for j in range(contacts):
+            if box[PARTICIPATES, j] != 0.0:
+                limit = friction.kinetic[j]
+                motion.state[F, j] = min(max(forces[j], -limit), limit)
+        if not _release_accelerated(problem, row, motion, box, order + 1):
+            return False
+        if not _decides_nothing(motion, box):
+            break
     for j in range(contacts):
-        box[FREE, j] = 0.0
-        for other in range(contacts):
-            box[FREE, j] += row.mobility[j, other] * box[HOLDING, other]
-    _fill_whole(problem, row, motion, box, True)
-    if not _find_forces(problem, row, motion, box):
-        return False
-    for j in range(contacts):
-        if box[PARTICIPATES, j] != 0.0:
-            limit = friction.kinetic[j]
-            motion.state[F, j] = min(max(forces[j], -limit), limit)
-    return _release_accelerated(problem, row, motion, box, 2)
+        box[ORDER_MATTERS, j] = 0.0
+    return True
 
 
 @kernel

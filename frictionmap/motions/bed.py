@@ -6,6 +6,7 @@ import numpy as np
 
 from .._kernels.general.problem import Problem
 from .._kernels.history.asleep import Bed
+from ..general.problem import pull_of
 
 #: Squared frequencies of held modes below this share of the largest are those of motions that nothing
 #: restores, computed with rounding error.
@@ -74,11 +75,13 @@ def held(problem: Problem) -> Held:
     size = 2 * modes + contacts
     elastic = problem.spring > 0.0
     chi_r, chi_e, kt = problem.chi[~elastic], problem.chi[elastic], problem.spring[elastic]
+    if problem.coupling.flexibility.size:
+        kt = np.linalg.inv(problem.coupling.flexibility)
     q = np.eye(modes, size)
     p = np.eye(modes, size, modes)
     f = np.eye(contacts, size, 2 * modes)[elastic]
     basis = basis_beside(chi_r, modes)
-    stiffness = basis.T @ (np.diag(problem.squares) + chi_e.T @ (kt[:, np.newaxis] * chi_e)) @ basis
+    stiffness = basis.T @ (np.diag(problem.squares) + chi_e.T @ pull_of(kt, chi_e)) @ basis
     squares, shapes = np.linalg.eigh(stiffness) if basis.shape[1] else (np.empty(0), np.empty((0, 0)))
     restored = squares > FREE * max(squares.max(initial=0.0), problem.squares.max(initial=0.0))
     shapes_r = basis @ shapes[:, restored]
@@ -86,16 +89,16 @@ def held(problem: Problem) -> Held:
     pull = shapes_r.T @ (problem.squares[:, np.newaxis] * q + chi_e.T @ f)
     away = pull / (omega**2)[:, np.newaxis]  # held modes, from their place of rest
     rest = q - shapes_r @ away
-    springs = f - kt[:, np.newaxis] * (chi_e @ (q - rest))
+    springs = f - pull_of(kt, chi_e @ (q - rest))
     vibration = np.vstack((omega[:, np.newaxis] * away, (basis @ shapes).T @ p))
     forces, gains = np.zeros((contacts, size)), np.zeros(contacts)
     forces[elastic] = springs
-    gains[elastic] = np.linalg.norm(kt[:, np.newaxis] * (chi_e @ shapes_r) / omega, axis=1)
+    gains[elastic] = np.linalg.norm(pull_of(kt, chi_e @ shapes_r) / omega, axis=1)
     if chi_r.size:
         mobility = chi_r @ chi_r.T
         load = problem.squares[:, np.newaxis] * rest + chi_e.T @ springs
         forces[~elastic] = -np.linalg.solve(mobility, chi_r @ load)
-        by_place = (np.diag(problem.squares) + chi_e.T @ (kt[:, np.newaxis] * chi_e)) @ shapes_r / omega
+        by_place = (np.diag(problem.squares) + chi_e.T @ pull_of(kt, chi_e)) @ shapes_r / omega
         by_rate = problem.damping @ basis @ shapes
         both = np.linalg.solve(mobility, chi_r @ np.hstack((by_place, by_rate)))
         paired = np.zeros((both.shape[0], by_rate.shape[1]))

@@ -248,8 +248,11 @@ class Motions:
 
         at : 0: that at the beginning of the motion; 1: that at its end; SHOWN: the states kept
         """
-        elastic = self.structure.spring > 0.0
-        springs = (f[elastic].T ** 2 / self.structure.spring[elastic]).sum(axis=-1)
+        elastic, flexibility = self.structure.spring > 0.0, self.problem.coupling.flexibility
+        if flexibility.size:
+            springs = (f * (flexibility @ f)).sum(axis=0)
+        else:
+            springs = (f[elastic].T ** 2 / self.structure.spring[elastic]).sum(axis=-1)
         return np.asarray(0.5 * ((p**2).sum(axis=0) + self.problem.squares @ q**2 + springs))
 
     def energies_at_ends(self, one: Found, start: Start) -> tuple[float, float]:

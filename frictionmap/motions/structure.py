@@ -7,7 +7,17 @@ import numpy as np
 
 from .._kernels.general.problem import Problem
 from ..errors import InputError
-from ..general.problem import ModalSystem, fastest, law_of, modal_system, refuse_loop, springs, ties
+from ..general.problem import (
+    ModalSystem,
+    coupling_of,
+    fastest,
+    law_of,
+    modal_system,
+    refuse_loop,
+    spring_matrix,
+    springs,
+    ties,
+)
 from ..model.general import ContactSystem, in_general_form, refuse_banks, refuse_phases
 from ..model.points import Points
 from ..model.system import System
@@ -73,12 +83,12 @@ def structure_of(system: System, opens: bool = False) -> Structure:
     if general.points is not None:
         refuse_banks(system, "compute motions under records of a structure given by modes")
     refuse_loop(general)
-    if general.flexibility.size:
+    if general.flexibility.size and any(group.first.normal_record is not None for group in general.groups):
         raise InputError(
             "cannot use",
-            "residual",
-            "in motions in time with several contacts that it couples: their forces would jump together "
-            "with the load; use with_residual = false of a beam or plate, or omit residual",
+            "normal_record",
+            "with a residual flexibility that couples contacts; use with_residual = false of a beam or "
+            "plate, or omit residual",
         )
     if any(group.first.nu for group in general.groups):
         raise InputError(
@@ -87,8 +97,7 @@ def structure_of(system: System, opens: bool = False) -> Structure:
             "in a motion in time: its load has no period; give the contact a normal_record",
         )
     modal = modal_system(system)
-    spring = springs(general)
-    return Structure(system, modal, spring, fastest(modal, spring))
+    return Structure(system, modal, springs(general), fastest(modal, spring_matrix(general)))
 
 
 def _belts(general: ContactSystem) -> np.ndarray:
@@ -125,6 +134,7 @@ def problem_of(structure: Structure, drive: Drive) -> Problem:
         tied, np.empty(0), np.ones(1),
         np.empty((1, 2, drive.push.shape[1], 0)), np.array([structure.rate]),
         np.array([size if size > 0.0 else 1.0]), False, law_of(structure.system, modal),
+        coupling=coupling_of(general),
     )  # fmt: skip
 
 

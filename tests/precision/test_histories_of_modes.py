@@ -332,9 +332,6 @@ def test_first_harmonics_are_those_of_points():
     (lambda: fm.System(modes=fm.Modes([1.0], 0.1, [[1.0]], ["tip"], [[0.1]], participation=[1.0]),
                        contact_masses=["tip"], contact_stiffness=1.0),
      fm.Record([0.0, 1.0, 0.0], dt=0.1), "cannot use residual .* without base_residual"),
-    (lambda: fm.System(modes=fm.Beam(**UNIT, points={"tip": 1.0, "mid": 0.5}), contacts=[
-        fm.Contact(masses=["tip"], stiffness=1.0), fm.Contact(masses=["mid"], stiffness=1.0)]),
-     fm.Record([0.0, 1.0, 0.0], dt=0.1, quantity="force"), "with_residual = false"),
     (lambda: fm.System(modes=fm.Beam(**UNIT, points={"tip": 1.0}), contact_masses=["tip"]),
      fm.Record([0.0, 1.0, 0.0], dt=0.1, quantity="force", mass="top"), "must be one of the points tip"),
 ])  # fmt: skip

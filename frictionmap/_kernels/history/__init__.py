@@ -8,6 +8,7 @@ module           what is in it
 kept             peaks, works, slides, events and samples of a motion in time
 course           a record as polynomials over its intervals; what became of a motion under it
 springs          springs under varying normal loads, where an interval begins
+coupled_springs  springs that a residual flexibility couples, where an interval begins
 tables           intervals in which nothing happens, by sums
 held             what is held stays where it is
 asleep           when a motion under no load has ended for all contacts

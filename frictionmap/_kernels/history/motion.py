@@ -14,6 +14,7 @@ from ..general.crossings import NONE, value_at
 from ..general.follow import count_time, pass_event, prepare
 from ..general.laws.contact import jumps
 from ..general.laws.coulomb import first_event, reaches, watched_slope
+from ..general.laws.coupled import LEAP, is_coupled
 from ..general.laws.elastic import rest_springs
 from ..general.laws.kinds import has_constraint, is_constrained
 from ..general.laws.speed import first_bound, has_law, is_at_speed, rate_under, set_segments
@@ -36,6 +37,7 @@ from ..general.problem import (
 from ..general.row import make_motion, make_row, put_part, set_channels, set_interval
 from ..general.series import advance, expand, factor_held
 from .asleep import is_asleep
+from .coupled_springs import begin_coupled
 from .course import (
     ASLEEP,
     AT_LIMIT,
@@ -306,15 +308,34 @@ def _note_leaps(course, k, leaps):
 
 @kernel
 def _begin_at_walls(problem, friction, memory, course, kept):
-    """Let springs follow what the load displaces at once where the record begins."""
-    row, motion, leaps = memory.row, memory.motion, memory.box[0]
+    """Let springs follow what the load displaces at once where the record begins; see `_begin_springs`."""
+    row, motion, leaps = memory.row, memory.motion, memory.box[LEAP]
     before = memory.before
+    _note_leaps(course, 0, leaps)
+    if is_coupled(problem):
+        return begin_coupled(problem, row, friction, motion, kept, before, memory.box)
     for j in range(motion.sense.size):
         before[j] = motion.sense[j]
-    _note_leaps(course, 0, leaps)
     follow_walls(problem, row, friction, motion, leaps, kept)
     list_changes(row, motion, before, 0.0, kept)
     slip_with_walls(problem, row, friction, leaps, kept)
+    return True
+
+
+@kernel
+def _begin_springs(problem, friction, memory, course, kept, jump):
+    """Decide what springs do where an interval begins; False if coupled ones have no pattern there.
+
+    jump : the interval, if the load jumps, else -1
+    """
+    row, motion, leaps = memory.row, memory.motion, memory.box[LEAP]
+    leaps[:] = 0.0
+    if jump >= 0:
+        _note_leaps(course, jump, leaps)
+    if is_coupled(problem):
+        return begin_coupled(problem, row, friction, motion, kept, memory.before, memory.box)
+    begin_springs(problem, row, friction, motion, kept, memory.before, course, memory.rests, leaps)
+    return True
 
 
 @kernel
@@ -355,8 +376,8 @@ def begin(memory, problem, friction, course, start, senses, kept):
         by_law = senses[j] == BY_LAW
         motion.sense[j] = _sense_at_start(problem, row, motion, j) if by_law else senses[j]
     set_segments(problem, row, motion)
-    if senses[0] != BY_LAW:
-        slip_at_start(problem, row, friction, motion, kept)
+    if senses[0] != BY_LAW and not slip_at_start(problem, row, friction, motion, kept):
+        return False
     if not prepare(problem, row, friction, motion):
         return False
     settles = senses[0] == BY_LAW or _is_overloaded(problem, row, friction, motion)
@@ -366,7 +387,7 @@ def begin(memory, problem, friction, course, start, senses, kept):
     before[:] = 1.0
     note_places(problem, row, motion, before, 0.0, course.times[0], memory.places)
     if senses[0] == BY_LAW and bends(course.direct):
-        _begin_at_walls(problem, friction, memory, course, kept)
+        return _begin_at_walls(problem, friction, memory, course, kept)
     return True
 
 
@@ -404,13 +425,10 @@ def follow_part(memory, problem, friction, course, kept, part, jump, listed):
     jumped = jump >= 0 and part == 0
     changed = jumped
     if part == 0 and (bends(course.direct) or has_varying_spring(problem)):
-        leaps = memory.box[0]
-        leaps[:] = 0.0
-        if jumped:
-            _note_leaps(course, jump, leaps)
-        changed |= begin_springs(
-            problem, row, friction, motion, kept, memory.before, course, memory.rests, leaps
-        )
+        events = kept.counts[0]
+        if not _begin_springs(problem, friction, memory, course, kept, jump):
+            return UNDETERMINED
+        changed |= kept.counts[0] > events
     if jumped and not _jump(problem, friction, memory, course.ties, kept):
         return UNDETERMINED
     by_tables = not jumped and tables.known.size > 0

@@ -12,6 +12,7 @@ place or the velocity of the wall, and what holds of limits holds of walls.
 import math
 
 from ..compiler import kernel
+from ..general.laws.coupled import is_coupled
 from ..general.laws.kinds import has_force
 from ..general.problem import LOAD_TERMS, F, slide_velocity, varies, velocity_row
 from ..general.row import set_channels
@@ -23,8 +24,8 @@ _SAME = 1e-13
 #: Leading terms of a velocity that may be zero at most.
 _MOST_ZEROS = 7
 
-#: A spring whose force is below this share of its limit does not slip.
-_BELOW = 1.0 - 1e-9
+#: A spring whose force is below this share of its limit does not slip; one above that share exceeds it.
+_BELOW, _ABOVE = 1.0 - 1e-9, 1.0 + 1e-9
 
 #: A speed of a slider within this share of its terms is rest.
 _AT_REST = 1e-12
@@ -134,21 +135,26 @@ def _slip_at_once(problem, row, friction, motion, kept):
 
 @kernel
 def slip_at_start(problem, row, friction, motion, kept):
-    """Adapt springs of a motion that goes on to their friction, which may be another.
+    """Adapt springs of a motion that goes on to their friction, which may be another; whether they can be.
 
-    Sliders slip at once until the forces are at lower limits, and rest below higher ones.
+    Sliders slip at once until the forces are at lower limits, and rest below higher ones.  Where a residual
+    flexibility couples them, what one slips at once moves the others: that is not followed.
     """
+    coupled = is_coupled(problem)
     for j in range(motion.sense.size):
         if not has_force(problem, j):
             continue
         limit, _, error = _limit(problem, row, friction, j)
         force = motion.state[F, j]
         if abs(force) > limit + error:
+            if coupled and abs(force) > limit * _ABOVE:
+                return False
             way = (abs(force) - limit) / problem.spring[j]
             add_slide(kept, j, way, 0.5 * (abs(force) + limit) * way)
             motion.state[F, j] = math.copysign(limit, force)
         elif abs(force) < limit * _BELOW:
             motion.sense[j] = 0
+    return True
 
 
 @kernel
@@ -265,14 +271,9 @@ def begin_springs(problem, row, friction, motion, kept, before, course, rests, l
     before : (N,) scratch
     course, leaps : see `course.Course`, `follow_walls`
     rests : see `rest_tied`
-
-    Returns
-    -------
-    bool : whether a slider stopped, or began to slip
     """
     motion.clock[0] = math.nan
     set_channels(problem, row, 0.0, 0, motion)
-    listed = kept.counts[0]
     for part in range(2):
         for j in range(motion.sense.size):
             before[j] = motion.sense[j]
@@ -285,4 +286,3 @@ def begin_springs(problem, row, friction, motion, kept, before, course, rests, l
             _bend(problem, row, friction, motion, course.direct)
             rest_tied(problem, row, friction, motion, course.ties, rests, 0)
         list_changes(row, motion, before, 0.0, kept)
-    return kept.counts[0] > listed

@@ -30,6 +30,7 @@ from ..compiler.vectors import LANES, filled, load, store
 from ..general.counts import STUCK
 from ..general.crossings import slope_at, value_at
 from ..general.glide import begin_with
+from ..general.laws.coupled import is_coupled
 from ..general.laws.kinds import has_force, state_size
 from ..general.laws.speed import has_law
 from ..general.problem import (
@@ -407,14 +408,17 @@ def _rise(problem, row, units, d):
 
 
 @inner_kernel
-def _slide(problem, row, tables, j):
-    """Way of contact j relative to its wall."""
+def _slide(problem, row, motion, tables, j):
+    """Way of contact j relative to its wall; of a coupled spring, that of its slider."""
     way = -row.numbers[H] * problem.belt[j]
     for m in range(problem.chi.shape[1]):
         way += problem.chi[j, m] * tables.sums[m]
     for d in range(problem.push.shape[1]):
         if problem.base[j, d] != 0.0:
             way -= problem.base[j, d] * _rise(problem, row, tables.units, d)
+    for i in range(problem.spring.size if is_coupled(problem) else 0):
+        if motion.sense[i] == 0:
+            way -= problem.coupling.flexibility[j, i] * tables.sums[2 * problem.squares.size + i]
     return way
 
 
@@ -474,7 +478,7 @@ def _take(problem, row, friction, motion, counts, kept, tables):
     for j in range(contacts):
         kept.forces[j] = motion.sense[j] * friction.kinetic[j]
         if motion.sense[j] != 0:
-            way = abs(_slide(problem, row, tables, j))
+            way = abs(_slide(problem, row, motion, tables, j))
             kept.record.distance[j] += way
             kept.record.works[OF_FRICTION, j] += way * friction.kinetic[j]
             kept.slides[PRESENT, j] += way

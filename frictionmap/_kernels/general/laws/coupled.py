@@ -28,8 +28,8 @@ _BLOCKS, _MOST_PIVOTS = 10, 2000
 
 #: Rows of the scratch: the side of its range that a contact is at, or 0; rate of its force there; rate of the
 #: displacement without forces, and the size of its terms; rates of the force and of the slider; 1 where these
-#: are not those of its pattern.
-_SIDE, _ALONG, _FREE, _SIZE, _FORCE, _SLIDE, _WRONG = range(7)
+#: are not those of its pattern; largest force; two rows that are free.
+SIDE, ALONG, FREE, SIZE, FORCE, SLIDE, _WRONG, LIMIT, OWN, LEAP = range(10)
 
 
 @inner_kernel
@@ -92,16 +92,17 @@ def _fill_free(problem, friction, motion, x, box):
     contacts, series = motion.sense.size, motion.series
     flexibility = problem.coupling.flexibility
     for j in range(contacts):
-        box[_FORCE, j] = slope_at(series, force_row(problem, j), x)
+        box[FORCE, j] = slope_at(series, force_row(problem, j), x)
     for j in range(contacts):
-        box[_SIDE, j] = motion.sense[j]
-        box[_ALONG, j] = friction.kinetic[j] * slope_at(series, normal_row(problem, j), x)
+        box[SIDE, j] = motion.sense[j]
+        box[ALONG, j] = friction.kinetic[j] * slope_at(series, normal_row(problem, j), x)
+        box[LIMIT, j] = limit_at(problem, friction, motion, x, j)
         slide = slip_rate(problem, friction, motion, x, j) if motion.sense[j] != 0 else 0.0
-        box[_FREE, j], box[_SIZE, j] = slide, abs(slide)
+        box[FREE, j], box[SIZE, j] = slide, abs(slide)
         for i in range(contacts):
-            part = flexibility[j, i] * box[_FORCE, i]
-            box[_FREE, j] += part
-            box[_SIZE, j] += abs(part)
+            part = flexibility[j, i] * box[FORCE, i]
+            box[FREE, j] += part
+            box[SIZE, j] += abs(part)
 
 
 @kernel
@@ -113,44 +114,44 @@ def _rates_of_choice(problem, motion, box):
         return False
     for j in range(contacts):
         if motion.sense[j] != 0:
-            box[_FORCE, j] = motion.sense[j] * box[_ALONG, j]
+            box[FORCE, j] = motion.sense[j] * box[ALONG, j]
     for a in range(motion.springs[contacts]):
         j = motion.springs[a]
-        right[a] = box[_FREE, j]
+        right[a] = box[FREE, j]
         for i in range(contacts):
             if motion.sense[i] != 0:
-                right[a] -= flexibility[j, i] * box[_FORCE, i]
+                right[a] -= flexibility[j, i] * box[FORCE, i]
     solve_springs(motion, right)
     for a in range(motion.springs[contacts]):
-        box[_FORCE, motion.springs[a]] = right[a]
+        box[FORCE, motion.springs[a]] = right[a]
     for j in range(contacts):
-        box[_SLIDE, j] = 0.0
+        box[SLIDE, j] = 0.0
         if motion.sense[j] != 0:
-            box[_SLIDE, j] = box[_FREE, j]
+            box[SLIDE, j] = box[FREE, j]
             for i in range(contacts):
-                box[_SLIDE, j] -= flexibility[j, i] * box[_FORCE, i]
+                box[SLIDE, j] -= flexibility[j, i] * box[FORCE, i]
     return True
 
 
 @inner_kernel
 def _fall(box, j):
     """How fast the force of a contact at its limit falls below it."""
-    return box[_ALONG, j] - box[_SIDE, j] * box[_FORCE, j]
+    return box[ALONG, j] - box[SIDE, j] * box[FORCE, j]
 
 
 @inner_kernel
 def _rounding(problem, box, j):
     """Rate of the force of a contact that may be rounding error."""
-    return _TIE * box[_SIZE, j] * problem.coupling.stiffest[j]
+    return _TIE * box[SIZE, j] * problem.coupling.stiffest[j]
 
 
 @kernel
 def _is_wrong(problem, motion, box, j):
     """Whether a contact at its limit slips against its sense, or is held and exceeds its limit."""
-    if box[_SIDE, j] == 0.0:
+    if box[SIDE, j] == 0.0:
         return False
     if motion.sense[j] != 0:
-        return motion.sense[j] * box[_SLIDE, j] < -_TIE * box[_SIZE, j]
+        return motion.sense[j] * box[SLIDE, j] < -_TIE * box[SIZE, j]
     return _fall(box, j) < -_rounding(problem, box, j)
 
 
@@ -164,21 +165,38 @@ def _flip_wrong(problem, motion, box, alone):
             count, last = count + 1, j
     for j in range(motion.sense.size):
         if box[_WRONG, j] != 0.0 and (j == last or not alone):
-            motion.sense[j] = 0 if motion.sense[j] != 0 else int(box[_SIDE, j])
+            motion.sense[j] = 0 if motion.sense[j] != 0 else int(box[SIDE, j])
     return count
 
 
 @kernel
-def _begin_phases(problem, friction, motion, x, contact, box):
-    """Set the forces of the contacts at their limits, and the leading zeros of what is watched in them."""
+def find_pattern(problem, motion, box):
+    """Flip contacts at their limits until the rates are those of the pattern; False if none was found.
+
+    box : scratch, with SIDE, ALONG, FREE and SIZE; FORCE and SLIDE are filled
+    """
+    for pivot in range(_MOST_PIVOTS):
+        if not _rates_of_choice(problem, motion, box):
+            return False
+        if _flip_wrong(problem, motion, box, pivot >= _BLOCKS) == 0:
+            return True
+    return False
+
+
+@kernel
+def begin_phases(problem, motion, contact, box):
+    """Set the forces of the contacts at their limits, and the leading zeros of what is watched in them.
+
+    contact : that whose force has reached its limit; -1: none
+    """
     for j in range(motion.sense.size):
-        side = int(box[_SIDE, j])
+        side = int(box[SIDE, j])
         if side == 0:
             continue
-        motion.state[F, j] = side * limit_at(problem, friction, motion, x, j)
+        motion.state[F, j] = side * box[LIMIT, j]
         if motion.sense[j] == 0:
             motion.fresh[j] = side if _fall(box, j) > _rounding(problem, box, j) else 2 * side
-        elif abs(box[_SLIDE, j]) > _TIE * box[_SIZE, j]:
+        elif abs(box[SLIDE, j]) > _TIE * box[SIZE, j]:
             motion.fresh[j] = 0
         elif j == contact:
             motion.fresh[j] = max(0, side * motion.fresh[j] - 1)  # the force's zeros less one of y'
@@ -201,17 +219,12 @@ def begin_slip(problem, friction, motion, x, contact, side, box, jumps):
     """
     _fill_free(problem, friction, motion, x, box)
     for j in range(motion.sense.size):
-        jumps[j] = -box[_FORCE, j]
+        jumps[j] = -box[FORCE, j]
     motion.sense[contact] = side
-    box[_SIDE, contact] = side
-    for pivot in range(_MOST_PIVOTS):
-        if not _rates_of_choice(problem, motion, box):
-            return False
-        if _flip_wrong(problem, motion, box, pivot >= _BLOCKS) == 0:
-            break
-        if pivot == _MOST_PIVOTS - 1:
-            return False
+    box[SIDE, contact] = side
+    if not find_pattern(problem, motion, box):
+        return False
     for j in range(motion.sense.size):
-        jumps[j] += box[_FORCE, j]
-    _begin_phases(problem, friction, motion, x, contact, box)
+        jumps[j] += box[FORCE, j]
+    begin_phases(problem, motion, contact, box)
     return True

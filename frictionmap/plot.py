@@ -1,5 +1,6 @@
 """Pictures: regime maps, boundaries, response curves, one response in time."""
 
+import functools
 import shutil
 from collections.abc import Callable
 from collections.abc import Set as AbstractSet
@@ -35,6 +36,7 @@ from .pictures.motions.suites import plot_energies, plot_incremental
 from .pictures.options import FigureOptions
 from .pictures.structures import plot_structure
 from .pictures.styles import settings_of, written
+from .units.scales import Units
 
 if TYPE_CHECKING:
     from .pictures.panels import AxesArray
@@ -199,16 +201,19 @@ def save_structure(
     what: str = "structure",
     *,
     style: Path | None = None,
+    units: Units | None = None,
     **options: Unpack[FigureOptions],
 ) -> None:
-    """Draw a structure, or its modes, into a file .png, .pdf or .svg.
+    """Draw a structure, or its modes, into a file .png, .pdf or .svg; with units modes are in hertz.
 
     Raises
     ------
     InputError
         `what` is neither "structure" nor "modes", or an option is invalid.
     """
-    drawn_by: dict[str, Callable[..., AxesArray]] = {"structure": plot_structure, "modes": plot_modes}
+    drawn_by: dict[str, Callable[..., AxesArray]] = {
+        "structure": plot_structure, "modes": functools.partial(plot_modes, units=units),
+    }  # fmt: skip
     if what not in drawn_by:
         raise InputError(
             f"unknown quantity {what!r} of a configuration{nearest(what, drawn_by)}; "

@@ -395,17 +395,17 @@ def _draw_cells(axes: Axes, found: dict) -> None:
         end = f"{done[-1]['ns a cell'] / 1e3:.2g} µs a cell at the end, power {slope(sizes, times):.2f}"
         axes.loglog(sizes, times, marker=marker, label=f"{name}: {end}")
     axes.set(xlabel="cells of the map", ylabel="time [s]", title="Maps: a fixed cost, then so much a cell")
-    axes.legend(loc="upper left", fontsize=8)
+    axes.legend(loc="lower right", fontsize=7)
 
 
 def _draw_memory(axes: Axes, found: dict) -> None:
     for (name, entry), marker in zip(found.items(), "os", strict=True):
         rows = entry["runs"]
-        label = f"{name}: time grows as the power {entry['slope of the time']:.2f}"
+        label = f"{name}: time to the power {entry['slope of the time']:.2f}"
         axes.loglog([row["size"] for row in rows], [row["MB"] for row in rows], marker=marker, label=label)
     axes.set(xlabel="cells, samples", ylabel="peak memory of the process [MB]", title="Memory")
     axes.set_ylim(bottom=100.0)
-    axes.legend(loc="upper left", fontsize=8)
+    axes.legend(loc="lower left", fontsize=8)
 
 
 def _draw_harmonics(axes: Axes, found: dict) -> None:

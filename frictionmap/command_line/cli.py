@@ -581,10 +581,14 @@ def _plot_structure(options: Options) -> None:
     path = options.output or Path(f"{options.file.stem}-{what}.png")
     if path.suffix.lower() not in FORMATS:
         raise InputError(f"-o must end in {', '.join(FORMATS)}; got {path}")
-    system = common_tables(read_tree(options.file)[0], options.file).system
+    tables = common_tables(read_tree(options.file)[0], options.file)
     given: Any = {name: getattr(options, name) for name in FIGURE if getattr(options, name) is not None}
     with claimed(path, options.overwrite, [options.file]) as output:
-        output.fill(lambda scratch: save_structure(system, scratch, what, style=options.style, **given))
+        output.fill(
+            lambda scratch: save_structure(
+                tables.system, scratch, what, style=options.style, units=tables.units, **given
+            )
+        )
     if not options.quiet:
         _print(f"wrote {path}")
 

@@ -59,6 +59,11 @@ class Amounts:
         measures = {"transmitted force": ("force", "P"), SHARE_LOST: ("", "")}
         self._measure, self._over = measures.get(response, ("length", "Y" if of_base else "P/k1"))
 
+    @property
+    def measure(self) -> str:
+        """What the response measures: length or force; nothing if it is a share."""
+        return self._measure
+
     def _with_unit(
         self, ratio: float, measure: str, towards: str, digits: int, like: float | None = None
     ) -> str:

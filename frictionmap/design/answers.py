@@ -91,7 +91,7 @@ def answer(
     ds.attrs["config"] += _table_text(question, {"band": [band.low, band.high], **asked})
     caution = _not_unique(question, values, scales)
     ds.attrs |= {"warnings": caution} if caution else {}
-    return ds.assign_attrs(scale_attributes(scales), response=_response_in_words(asked))
+    return ds.assign_attrs(scale_attributes(scales), response=_response_in_words(asked, system))
 
 
 def unloaded_answer(
@@ -135,9 +135,9 @@ def _not_unique(question: str, values: Mapping[str, Any], scales: Scales) -> str
     return f"{words}, and the larger response of those from rest and from a large sliding motion counts"
 
 
-def _response_in_words(asked: Mapping[str, Any]) -> str:
+def _response_in_words(asked: Mapping[str, Any], system: System) -> str:
     """Describe the response of a question; empty for one about boundaries."""
-    return Response(**asked["response"]).describe() if "response" in asked else ""
+    return Response(**asked["response"]).describe(system.dofs) if "response" in asked else ""
 
 
 def _answer_in_units(

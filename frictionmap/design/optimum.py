@@ -81,11 +81,11 @@ def sampled(task: Task, curve: PerformanceCurve) -> Points:
         raise InputError(
             "beta",
             f"must begin below {task.amounts.friction(curve.stuck.beta, digits=DIGITS)}, at or above which "
-            f"the {task.response.describe()} is 0 over the whole band; got {task.amounts.friction(task.low)}",
+            f"the {task.response_in_words} is 0 over the whole band; got {task.amounts.friction(task.low)}",
         )
     if not points.size.any():
         raise InputError(
-            f"cannot minimise the {task.response.describe()}: it is 0 over the whole band, whatever the "
+            f"cannot minimise the {task.response_in_words}: it is 0 over the whole band, whatever the "
             f"friction; choose another response or another band"
         )
     return points

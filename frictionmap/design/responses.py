@@ -12,6 +12,7 @@ from ..model.settings import Solver, Start
 from ..model.sizes import SEPARATION, Sizes, Wanted
 from ..model.system import System
 from ..solvers.choose import engine_of
+from ..structures.dofs import Dofs
 from .limits import starts_matter, unique_friction
 from .watching import current_watch, look
 
@@ -32,8 +33,8 @@ class Response(NamedTuple):
     mass: int = 1  # counted from 1
     contact: int = 1
 
-    def describe(self) -> str:
-        """Describe the quantity."""
+    def describe(self, dofs: Dofs) -> str:
+        """Describe the quantity; `dofs`: those of the system, for the name of its mass or point."""
         if self.quantity == "contact":
             return f"displacement in contact {self.contact}"
         if self.quantity == "transmitted_force":
@@ -41,7 +42,7 @@ class Response(NamedTuple):
         if self.quantity == SEPARATION:
             return SHARE_LOST
         what = "amplitude" if self.quantity == "amplitude" else "first harmonic"
-        return f"{what} of mass {self.mass}"
+        return f"{what} of {dofs.name(self.mass)}"
 
     def as_config(self) -> dict[str, Any]:
         """Return the table `response` of a configuration."""

@@ -57,7 +57,12 @@ class Task:
     @cached_property
     def amounts(self) -> Amounts:
         """Numbers of the question in words."""
-        return amounts_by(self.scales, self.response.describe(), self.system.excitation == "base")
+        return amounts_by(self.scales, self.response_in_words, self.system.excitation == "base")
+
+    @property
+    def response_in_words(self) -> str:
+        """The response, with the name of its mass or point."""
+        return self.response.describe(self.system.dofs)
 
     def limits(self) -> dict[str, float]:
         """Values of an answer about the band: friction without stops, and friction that sticks.

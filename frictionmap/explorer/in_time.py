@@ -261,8 +261,8 @@ def motion(motions: Motions, asked: Asked, job: "Job") -> tuple[dict[str, Any], 
         **asked._asdict(),
         "rows": [*_friction_words(motions, asked.beta), *(list(row) for row in _numbers(ds))],
         "names": {**names, "time": "time [s]" if in_seconds else "time [1/ω₁]", "drive": "record"},
-        "masses": [int(ds["dof"].values[k]) for k in masses],
-        "contacts": [int(k) + 1 for k in contacts],
+        "masses": [motions.system.dofs.name(int(ds["dof"].values[k])) for k in masses],
+        "contacts": [f"contact {k + 1}" for k in contacts],
     }
     directions = ds["direction"].values.reshape(-1, time.size)
     arrays = {"time": time[kept], "stuck": stuck_times(time, directions)}

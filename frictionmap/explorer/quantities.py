@@ -75,9 +75,7 @@ def amplitudes(system: System, what: str = "amplitude of", output: str = "amplit
 
 def name_of_mass(system: System, number: int) -> str:
     """Name of a mass: its number and label; without a number if it is the only one; of a point its name."""
-    if system.dofs.noun == POINT:
-        return f"point {system.dofs.word(number)}"
-    return f"mass {system.dofs.word(number)}" if system.n > 1 else "the mass"
+    return system.dofs.name(number) if system.dofs.noun == POINT or system.n > 1 else "the mass"
 
 
 def counted_of(view: View) -> Counted:

@@ -12,7 +12,7 @@ from ..datasets.labels import COORDINATES
 from ..datasets.motion_labels import CELL, axes_of_motions
 from ..datasets.schema import kind
 from ..errors import InputError
-from .short_tables import cell_table, decode_flags, is_single, short_table
+from .short_tables import cell_table, decode_flags, design_table, is_single, short_table
 from .storage import write_netcdf
 
 FORMATS = (".nc", ".csv")
@@ -62,9 +62,7 @@ def _table(ds: xr.Dataset, everything: bool = False) -> Any:
     if what == "estimates":
         return ds[list(OF_PARAMETERS)].to_dataframe()
     if what == "design":
-        over = next((axis for axis in ("beta_search", "r_search", "speed_search") if axis in ds.coords), None)
-        lines = [name for name in ds.data_vars if ds[name].dims == (over,)]
-        return (ds[lines] if over else ds).to_dataframe()
+        return design_table(ds, everything)
     if what in ("belt", "history", "spectrum", "shares"):
         return cell_table(ds, everything)
     dims = [str(name) for name in COORDINATES if name in ds.dims]

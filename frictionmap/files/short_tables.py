@@ -15,6 +15,7 @@ from .. import checks
 from ..datasets.amounts import DIGITS, amounts_of
 from ..datasets.labels import MEASURES, SCALES, in_si
 from ..datasets.motion_labels import AVERAGED, AVERAGES, CELL, SI_UNITS, axes_of_motions
+from ..datasets.physical import ones_of
 from ..datasets.schema import kind, labels_by_name
 from .slices import further_axes
 
@@ -37,6 +38,16 @@ _OTHERWISE = (
     *("first_harmonic_amplitude", "first_harmonic_phase", "contact_first_harmonic_amplitude"),
     *("transmitted_force", "sliding_distance", "work_friction", "work_input", "work_damping"),
 )
+
+#: Axes that design questions search, what they measure, and their names in units.
+_SEARCHED = {
+    "beta_search": ("force", "friction_force"),
+    "r_search": ("frequency", "frequency"),
+    "speed_search": ("velocity", "wall_speed"),
+}
+
+#: Responses along these axes.
+_OF_RESPONSE = ("peak_of_beta", "response_of_sample")
 
 #: Units behind a name that has none, as measured files write them.
 _ENDINGS = {"radian": "rad", **dict(SI_UNITS.values())}
@@ -96,6 +107,28 @@ def cell_table(ds: xr.Dataset, everything: bool = False) -> Any:
     checks.cells(1, 1, math.prod(wide.sizes.values()), name="a table")
     rows = wide.to_dataframe(dim_order=[dim for dim in axes if dim in wide.dims])
     return rows.rename_axis(index=lambda axis: f"{axis}_s" if ds[axis].attrs.get("units") == "s" else axis)
+
+
+def design_table(ds: xr.Dataset, everything: bool = False) -> Any:
+    """Data frame of the curve that a design question searched: a row per friction, frequency or belt speed.
+
+    everything : ratios also where there are values in SI units
+    """
+    over = next((axis for axis in _SEARCHED if axis in ds.coords), None)
+    if over is None:
+        return ds.to_dataframe()
+    ones, response = ones_of(ds), amounts_of(ds).measure
+    measure, name = _SEARCHED[over]
+    values = ds[over].values
+    columns = {in_si(name, measure): values * ones[measure]} if measure in ones else {}
+    columns[over] = values
+    for own in (str(own) for own in ds.data_vars if ds[own].dims == (over,)):
+        measure = "force" if own.startswith("beta_") else response if own in _OF_RESPONSE else ""
+        if measure in ones:
+            columns[in_si(own, measure)] = ds[own].values * ones[measure]
+        if measure not in ones or everything:
+            columns[own] = ds[own].values
+    return _frame(columns)
 
 
 def _with_quantiles_in_si(ds: xr.Dataset) -> xr.Dataset:
@@ -162,7 +195,9 @@ def _columns(
 
 
 def _number(ds: xr.Dataset, dim: str, k: int) -> str:
-    """The number of a mass or contact."""
+    """The number of a mass or contact, or the name of a point."""
+    if dim == "dof" and "point_name" in ds.coords:
+        dim = "point_name"
     return str(ds[dim].values[k]) if dim in ds.coords else str(k + 1)
 
 

@@ -62,6 +62,22 @@ question = "stuck"                # beta with which the damper can hold
 band = {}
 """
 
+#: Motions in time under a force on the loaded point, commented out: in units and in ratios.
+_MOTION = """\
+#[record]                         # for motions in time: frictionmap history
+#unit = "N"                       # a force on load_mass
+#pulse = { kind = "half-sine", amplitude = "20 N", duration = "10 ms" }      # or file = "blow.csv"
+#[history]
+#friction = ["2 N", "5 N"]
+"""
+_MOTION_OF_RATIOS = """\
+#[record]                         # for motions in time: frictionmap history
+#quantity = "force"               # on load_mass
+#pulse = { kind = "half-sine", amplitude = 2.0, duration = 2.0 }      # over P; or file = "blow.csv"
+#[history]
+#beta = [0.2, 0.5]
+"""
+
 _RING = """\
 [system]
 load_mass = 1
@@ -183,7 +199,8 @@ beta = { start = "0.1 N", stop = "8 N", num = 61 }
 [design]
 question = "stuck"                # the friction with which the contact holds
 band = ["12 Hz", "30 Hz"]
-""",
+"""
+            + _MOTION,
             """\
 [system]
 contact_masses = ["tip"]
@@ -202,7 +219,8 @@ beta = { start = 0.01, stop = 0.8, num = 61 }
 [design]
 question = "stuck"                # the friction with which the contact holds
 band = [0.7, 1.7]
-""",
+"""
+            + _MOTION_OF_RATIOS,
         ),
     ),
     "beam": _Special(
@@ -230,7 +248,8 @@ beta = { start = "0.1 N", stop = "8 N", num = 61 }
 [design]
 question = "stuck"                # the friction with which the contact holds
 band = ["30 Hz", "90 Hz"]
-""",
+"""
+            + _MOTION,
             """\
 [system]
 contact_masses = ["tip"]
@@ -249,7 +268,8 @@ beta = { start = 0.01, stop = 0.8, num = 61 }
 [design]
 question = "stuck"                # the friction with which the contact holds
 band = [0.8, 2.2]
-""",
+"""
+            + _MOTION_OF_RATIOS,
         ),
     ),
     "ring": _Special(

@@ -11,6 +11,7 @@ from ..datasets.amounts import amounts_of, per_cycle
 from ..datasets.labels import CELL, IN_SI, LABELS, OLDER_NAMES, regime_of_choice
 from ..datasets.physical import describe_scales
 from ..datasets.schema import TEXTS, kind
+from ..units.table import wrapped
 from .belts import describe_belts, is_in_si
 from .designs import describe_design
 from .estimates import describe_estimates, source_of_data
@@ -32,26 +33,36 @@ _LISTS = frozenset(("mu", "mode", "held_mode", "invariant", "dof", "mass_invaria
 
 
 def describe_map(ds: xr.Dataset) -> str:
-    """Describe a map in one line: number of cells by regime."""
+    """Describe a map, or response curves, in one line: the number of cells, or of points, by regime."""
     name = regime_of_choice(ds)
+    counts = _counts(ds[name], regimes.BELT_REGIMES) if name in ds else []
+    if kind(ds) == "curves":
+        curves, frequencies = ds.sizes["mu"] * ds.sizes["beta"], ds.sizes["r"]
+        words = f"{curves:,} response curve{'s' * (curves != 1)}, {frequencies:,} points each"
+        return words + _by_regime(counts)
     further = [dim for dim in ds[name].dims if dim not in CELL] if name in ds else []
-    cells = int(np.prod([ds.sizes[dim] for dim in (*further, *CELL)]))
-    return in_cells(cells, _counts(ds[name], regimes.BELT_REGIMES) if name in ds else [])
+    return in_cells(int(np.prod([ds.sizes[dim] for dim in (*further, *CELL)])), counts)
 
 
 def in_cells(cells: int, counts: Sequence[tuple[regimes.Code, int]]) -> str:
     """Describe the number of cells, in total and by regime."""
-    words = f"{cells:,} cells"
-    if counts:
-        words += f" ({', '.join(f'{count:,} {_plain(code)}' for code, count in counts)})"
-    return words
+    return f"{cells:,} cells{_by_regime(counts)}"
+
+
+def _by_regime(counts: Sequence[tuple[regimes.Code, int]]) -> str:
+    return f" ({', '.join(f'{count:,} {_plain(code)}' for code, count in counts)})" if counts else ""
+
+
+def _noun(ds: xr.Dataset) -> str:
+    """What a result is of: a cell of a map, or a point of a response curve."""
+    return "point" if kind(ds) == "curves" else "cell"
 
 
 def describe_causes(ds: xr.Dataset) -> list[str]:
     """Describe every cause of unresolved or doubtful cells, and the remedy, one per line."""
     if "status" not in ds:
         return []
-    return in_causes(_counts(ds["status"], regimes.STATUSES))
+    return in_causes(_counts(ds["status"], regimes.STATUSES), _noun(ds))
 
 
 def describe_locking(ds: xr.Dataset) -> list[str]:
@@ -72,10 +83,10 @@ def describe_reduction(ds: xr.Dataset) -> list[str]:
     return [] if found is None else [f"reduction: {found}"]
 
 
-def in_causes(counts: Sequence[tuple[regimes.Code, int]]) -> list[str]:
-    """Describe every status except resolved, one per line."""
+def in_causes(counts: Sequence[tuple[regimes.Code, int]], noun: str = "cell") -> list[str]:
+    """Describe every status except resolved, one per line; `noun`: what is counted."""
     return [
-        f"{count:,} cell{'s' * (count != 1)} {code.name}: {code.advice}"
+        f"{count:,} {noun}{'s' * (count != 1)} {code.name}: {code.advice}"
         for code, count in counts
         if code.value != regimes.RESOLVED
     ]
@@ -235,7 +246,7 @@ def _estimates(ds: xr.Dataset, verbose: bool) -> Iterator[str]:
     yield "estimates"
     for line in describe_estimates(ds, verbose):
         shown = "".join(c if c.isprintable() else "?" for c in f"  {line}")
-        yield from textwrap.wrap(shown, _WIDTH, subsequent_indent=" " * 6)
+        yield from wrapped(shown, _WIDTH, subsequent_indent=" " * 6)
 
 
 def _numbers_in_lines(ds: xr.Dataset, names: Sequence[Hashable]) -> list[str]:
@@ -252,7 +263,7 @@ def _printable(text: str) -> str:
 
 def _entry(name: str, text: str) -> list[str]:
     """Format a name and its text, wrapped to at most three lines."""
-    return textwrap.wrap(
+    return wrapped(
         f"  {name:<{_INDENT - 3}} {text}",
         _WIDTH,
         subsequent_indent=" " * _INDENT,
@@ -321,7 +332,7 @@ def _describe_results(ds: xr.Dataset, what: str) -> Iterator[str]:
         yield from _motion(ds)
     yield from (f"  {line}" for line in (*describe_causes(ds), *describe_locking(ds)))
     if what in ("map", "curves") and "stops_per_cycle" in ds:
-        yield from _stops(ds["stops_per_cycle"].values)
+        yield from _stops(ds["stops_per_cycle"].values, _noun(ds))
 
 
 def _motion(ds: xr.Dataset) -> Iterator[str]:
@@ -333,8 +344,8 @@ def _motion(ds: xr.Dataset) -> Iterator[str]:
         yield f"stops begin at tau/pi =  {_numbers(begins / np.pi)}"
 
 
-def _stops(stops: np.ndarray) -> Iterator[str]:
-    """Count cells by stops per cycle: integers one by one, non-integer numbers together."""
+def _stops(stops: np.ndarray, noun: str) -> Iterator[str]:
+    """Count cells, or points, by stops per cycle: integers one by one, non-integer numbers together."""
     found = stops[stops > 0]
     whole = found == np.rint(found)
     values, counts = np.unique(found[whole], return_counts=True)
@@ -346,4 +357,4 @@ def _stops(stops: np.ndarray) -> Iterator[str]:
         ends = f"{non_integer.min():.4g} to {non_integer.max():.4g}"
         entries.append(f"non-integer, {ends}: {non_integer.size:,}")
     if entries:
-        yield f"cells by stops per cycle  {', '.join(entries)}"
+        yield f"{noun}s by stops per cycle  {', '.join(entries)}"

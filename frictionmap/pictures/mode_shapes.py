@@ -11,6 +11,7 @@ from ..errors import InputError
 from ..model.system import System
 from ..structures.modes import Modes
 from ..structures.uniform import Beam, Plate
+from ..units.scales import OF_MODEL, Units, scales_of
 from .drawing import with_options
 from .options import FigureOptions, current
 from .palette import LINES
@@ -46,20 +47,20 @@ def _structure_of(given: object) -> Beam | Plate | Modes:
     )
 
 
-def _draw_beam(ax: Axes, beam: Beam, k: int) -> None:
-    """Draw a mode over the place on a beam."""
+def _draw_beam(ax: Axes, beam: Beam, k: int, length: str) -> None:
+    """Draw a mode over the place on a beam; `length`: the unit of places in brackets, if it is known."""
     x = np.linspace(0.0, beam.length, _PLACES)
     ax.axhline(0.0, color="0.6", linewidth=0.8)
     ax.plot(x, beam.shapes_at(x)[:, k], color=LINES[0], linewidth=1.4)
     for (name, place), value in zip(beam.points.items(), beam.shapes[:, k], strict=True):
         ax.plot(place, value, "o", color=LINES[4], markersize=4.0)
         _name_point(ax, name, place, value)
-    ax.set_xlabel("place on the beam")
+    ax.set_xlabel(f"place on the beam{length}")
     ax.set_ylabel("shape")
 
 
-def _draw_plate(ax: Axes, plate: Plate, k: int) -> None:
-    """Draw a mode of a plate as colours, with its nodal lines."""
+def _draw_plate(ax: Axes, plate: Plate, k: int, length: str) -> None:
+    """Draw a mode of a plate as colours, with its nodal lines; `length` as of a beam."""
     x, y = (np.linspace(0.0, side, _ACROSS) for side in plate.size)
     places = np.stack(np.meshgrid(x, y), axis=-1)
     values = plate.shapes_at(places.reshape(-1, 2))[:, k].reshape(_ACROSS, _ACROSS)
@@ -74,8 +75,8 @@ def _draw_plate(ax: Axes, plate: Plate, k: int) -> None:
         ax.plot(px, py, "o", color="black", markersize=4.0, clip_on=False)
         _name_point(ax, name, px, py, below=True)
     ax.set_aspect("equal")
-    ax.set_xlabel("$x$")
-    ax.set_ylabel("$y$")
+    ax.set_xlabel(f"$x${length}")
+    ax.set_ylabel(f"$y${length}")
 
 
 def _draw_points(ax: Axes, modes: Modes, k: int) -> None:
@@ -101,11 +102,16 @@ def _name_point(ax: Axes, name: str, x: float, y: float, below: bool = False) ->
     )  # fmt: skip
 
 
-def _frequency_words(structure: object, frequency: float) -> str:
-    """The natural frequency of a mode: of masses a frequency ratio, else in the unit of the modes."""
-    if isinstance(structure, System) and geometry_of(structure) is None:
+def _frequency_words(structure: object, frequency: float, units: Units | None) -> str:
+    """The natural frequency of a mode: in hertz, or of masses without units a frequency ratio."""
+    of_masses = geometry_of(structure) is None
+    hertz = scales_of(units, structure).of("frequency") if isinstance(structure, System) else None
+    if isinstance(structure, System) and hertz is not None:
+        one = 1.0 if of_masses else structure.omega_1
+        return f"{frequency / one * hertz:.5g} Hz"
+    if of_masses:
         return f"$r$ = {frequency:.5g}"
-    return f"frequency over $2\\pi$ {frequency / (2.0 * np.pi):.5g}"
+    return f"$\\omega/2\\pi$ = {frequency / (2.0 * np.pi):.5g} (Hz in SI units)"
 
 
 @with_options
@@ -113,6 +119,7 @@ def plot_modes(
     structure: Beam | Plate | Modes | System,
     ax: "Axes | Sequence[Axes] | AxesArray | None" = None,
     count: int = 4,
+    units: Units | None = None,
     **options: Unpack[FigureOptions],
 ) -> "AxesArray":
     """Draw the first elastic modes of a beam, a plate, or of any structure at its points or masses.
@@ -125,6 +132,8 @@ def plot_modes(
         As many axes as modes to draw into.
     count : int
         Number of modes, 1 to 24; fewer where there are fewer.
+    units : Units, optional
+        Of a system: natural frequencies are then in hertz.
 
     Returns
     -------
@@ -152,14 +161,15 @@ def plot_modes(
         axes = grid_of_panels(len(draw), current().columns(min(len(draw), 2)), 2.6, f"Modes of the {title}")
     else:
         axes = given_axes(ax, len(draw), "one for each mode")
+    length = " [m]" if units is not None and units.natural_frequency == OF_MODEL else ""
     for one, k in zip(axes, draw, strict=True):
         if isinstance(found, Beam):
-            _draw_beam(one, found, k)
+            _draw_beam(one, found, k, length)
         elif isinstance(found, Plate):
-            _draw_plate(one, found, k)
+            _draw_plate(one, found, k, length)
         else:
             _draw_points(one, found, k)
         frequency = found.frequencies[k]
-        words = f"mode {k + 1}, {_frequency_words(structure, frequency)}"
+        words = f"mode {k + 1}, {_frequency_words(structure, frequency, units)}"
         one.set_title(words, fontsize=points(10.0, "axes.titlesize"))
     return axes

@@ -139,6 +139,9 @@ LINES = ("#2b4fa6", "#bd7f50", "#00162c", "#48b2d1", "#cc1f03", "#2880b8")
 #: Colours of several contacts, used in turn: none is that of a mass, and they differ in lightness.
 CONTACTS = ("#8a2d86", "#6c9a3b", "#1d4a2a", "#d98fc9", "#4c1246", "#b3cc6a")
 
+#: Measured samples: no class of cells and no line has this colour.
+MEASURED = "#cc4777"
+
 #: Line styles of response curves, by regime.
 REGIME_LINES: dict[int, Literal["-"] | tuple[int, tuple[float, ...]]] = {
     regimes.CONTINUOUS: "-",

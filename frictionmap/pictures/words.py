@@ -1,24 +1,21 @@
 """Titles, captions, and the names of loads."""
 
 import re
-import textwrap
 
+import numpy as np
 import xarray as xr
 
 from ..files.stored import stored_excitation, stored_start
-
-#: An equals sign that no line ends beside.
-_TOGETHER = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
+from ..units.table import wrapped
 
 
 def balanced(text: str, width: int) -> str:
     """Wrap text into as few lines of `width` characters as possible, all of about equal length."""
-    text = text.replace(" = ", _TOGETHER)
-    lines = textwrap.wrap(text, width, break_on_hyphens=False)
+    lines = wrapped(text, width)
     narrow = max(1, -(-len(text) // max(1, len(lines))))
-    while len(textwrap.wrap(text, narrow, break_on_hyphens=False)) > len(lines):
+    while len(wrapped(text, narrow)) > len(lines):
         narrow += 1
-    return "\n".join(textwrap.wrap(text, narrow, break_on_hyphens=False)).replace(_TOGETHER, " = ")
+    return "\n".join(wrapped(text, narrow))
 
 
 def system_words(ds: xr.Dataset) -> str:
@@ -37,6 +34,23 @@ def name_of_contact(ds: xr.Dataset) -> str:
         return ""
     name = f" ({ds['contact_name'].item()})" if "contact_name" in ds.coords else ""
     return f"contact {int(ds['contact'])}{name}"
+
+
+def _points(ds: xr.Dataset) -> list[str]:
+    """Names of the points of a structure given by modes; none of masses."""
+    names = ds["point_name"].values if "point_name" in ds.coords else np.empty(0, dtype=str)
+    return [str(name).replace("$", r"\$") for name in np.atleast_1d(names)]  # not as formulas
+
+
+def names_of_masses(ds: xr.Dataset) -> list[str]:
+    """Names along `dof`, such as "mass 2" or "point tip"."""
+    points = [f"point {name}" for name in _points(ds)]
+    return points or [f"mass {number}" for number in np.atleast_1d(ds["dof"].values)]
+
+
+def symbols_of_masses(ds: xr.Dataset) -> list[str]:
+    """What displacements along `dof` are called at the ends of their lines: symbols, or names of points."""
+    return _points(ds) or [rf"$x_{{{number}}}$" for number in np.atleast_1d(ds["dof"].values)]
 
 
 def title_of_map(ds: xr.Dataset) -> str:

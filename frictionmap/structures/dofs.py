@@ -110,6 +110,10 @@ class Dofs:
             return _written(self.labels[self.row(number)])
         return f"{number} ({_written(self.labels[self.row(number)])})"
 
+    def name(self, number: int) -> str:
+        """What a number is called in a sentence: mass 2, mass 2 (17.3), or point tip."""
+        return f"{self.noun} {self.word(number)}"
+
 
 def _written(label: Label | str) -> str:
     return label if isinstance(label, str) else f"{label[0]}.{label[1]}"

@@ -5,8 +5,10 @@ where a ratio is of two angular frequencies.  1 in = 0.0254 m, 1 lb = 0.45359237
 g = 9.80665 m/s^2 (1901), so 1 lbf = 4.4482216152605 N.
 """
 
+import re
+import textwrap
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .. import checks
 from ..errors import InputError
@@ -69,6 +71,7 @@ UNITS = {
     "in/s^2": Unit("acceleration", _INCH, "in_s2"),
     "J": Unit("work", Fraction(1)),
     "mJ": Unit("work", Fraction(1, 1000)),
+    "kJ": Unit("work", Fraction(1000)),
     "s": Unit("time", Fraction(1), "s"),
     "ms": Unit("time", Fraction(1, 1000), "ms"),
     "us": Unit("time", Fraction(1, 10**6), "us"),
@@ -181,13 +184,32 @@ def checked_unit(unit: str, measures: str, name: str) -> str:
     return unit
 
 
+#: A number and the unit or per cent behind it; of units that begin alike the longest one.
+_WITH_UNIT = re.compile(
+    rf"(?<=\d) ({'|'.join(map(re.escape, sorted((*UNITS, *_ALIASES, '%'), key=len, reverse=True)))})(?![\w^])"
+)
+
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+
+
+def wrapped(text: str, width: int, **options: Any) -> list[str]:
+    """Wrap text; no line ends between a number and its unit, or beside an equals sign.
+
+    options : those of `textwrap.wrap`
+    """
+    joined = _WITH_UNIT.sub(lambda found: found[0].replace(" ", _NO_BREAK), text)
+    joined = joined.replace(" = ", f"{_NO_BREAK}={_NO_BREAK}")
+    lines = textwrap.wrap(joined, width, break_on_hyphens=False, **options)
+    return [line.replace(_NO_BREAK, " ") for line in lines]
+
+
 #: Units that pictures and words choose from, and the size in the SI unit from which each is handy.
 _HANDY = {
     "frequency": {"Hz": 0.0, "kHz": 1e4},
     "force": {"mN": 0.0, "N": 0.1, "kN": 1e4},
     "length": {"um": 0.0, "mm": 1e-4, "m": 1.0},
     "time": {"ms": 0.0, "s": 1.0},
-    "work": {"mJ": 0.0, "J": 0.1},
+    "work": {"mJ": 0.0, "J": 0.1, "kJ": 1e4},
     "velocity": {"mm/s": 0.0, "m/s": 1.0},
 }
 

@@ -112,6 +112,13 @@ def test_contacts_look_different_from_one_another(who, least):
     assert min(difference(to_rgb(a), to_rgb(b), who) for a, b in pairs) > least
 
 
+@pytest.mark.parametrize(("who", "least"), [("trichromat", 20.0), ("protanope", 14.0), ("deuteranope", 14.0)])
+def test_measured_samples_look_like_no_class_and_no_line(who, least):
+    others = [look.colour for look in (*palette.CLASSES, *palette.NO_LOAD.values())]
+    apart = [difference(to_rgb(palette.MEASURED), to_rgb(other), who) for other in (*others, *palette.LINES)]
+    assert min(apart) > least
+
+
 def test_no_contact_looks_like_a_mass():
     pairs = product(palette.CONTACTS, palette.LINES)
     assert min(difference(to_rgb(a), to_rgb(b), "trichromat") for a, b in pairs) > 15.0

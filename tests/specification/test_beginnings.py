@@ -164,6 +164,23 @@ def test_the_template_of_motions_runs_with_both_commands(numbers, tmp_path, monk
         assert main(["plot", f"map-{command}.nc", "--quiet"]) == 0
 
 
+@pytest.mark.parametrize("numbers", ["--units", "--ratios"])
+@pytest.mark.parametrize("kind", ["modes", "beam"])
+def test_motions_in_time_of_modes_are_in_the_comments(kind, numbers, tmp_path, monkeypatch, capsys):
+    """Without their signs these lines run as they stand; the points have their names in the picture."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", f"--{kind}", numbers, "--quiet"]) == 0
+    text = (tmp_path / "map.toml").read_text(encoding="utf-8")
+    comments = re.search(r"^#\[record\].*", text, re.MULTILINE | re.DOTALL)
+    (tmp_path / "map.toml").write_text(
+        text[: comments.start()] + re.sub("^#", "", comments[0], flags=re.MULTILINE), encoding="utf-8"
+    )
+    assert main(["history", "map.toml"]) == 0, capsys.readouterr().err
+    assert capsys.readouterr().out.count("largest displacement") == 2
+    assert main(["plot", "map-history.nc", "--quiet"]) == 0
+    assert loaded(tmp_path, (tmp_path / "map.toml").read_text(encoding="utf-8")).r.size > 1  # still a map
+
+
 @pytest.mark.parametrize("kind", SHORT)
 def test_units_and_ratios_of_a_template_are_one_system(kind, tmp_path):
     """Every ratio is exact, but that of the belt, a round number of each."""

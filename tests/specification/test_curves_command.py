@@ -116,7 +116,7 @@ def test_the_command_writes_what_python_computes(config, tmp_path, capsys):
     text = CONFIG + '[curves]\nharmonics = 2\nquantities = ["amplitude", "energy"]\n'
     config.write_text(text)
     assert main(["curves", str(config), "-o", str(tmp_path / "out.nc"), "--threads", "2"]) == 0
-    assert "30 cells (" in capsys.readouterr().out
+    assert "6 response curves, 5 points each (" in capsys.readouterr().out
     expected = fm.curves(
         fm.System("joined-base-wall"), np.arange(5) / 2.0, [0.0, 0.2, 3.0], [1.0, 1.5], harmonics=2,
         quantities=["amplitude", "energy"],
@@ -136,6 +136,9 @@ def test_a_summary_of_a_file_fits_on_one_screen(config, tmp_path, capsys):
     shown = capsys.readouterr().out
     assert "[curves]" in shown
     assert "first_harmonic_phase" in shown
+    assert "\n6 response curves, 5 points each (" in shown
+    assert "\npoints by stops per cycle  " in shown
+    assert " cells" not in shown
 
 
 def test_overrides_and_the_name_of_the_file(config, tmp_path, monkeypatch):

@@ -23,6 +23,7 @@ from frictionmap.design.questions.record import Goal, Question
 from frictionmap.design.questions.rows import answer_rows
 from frictionmap.explorer.goal import describe_goals
 from frictionmap.files.designs import describe_design
+from frictionmap.files.export import csv_of
 from frictionmap.files.json_schema import map_schema
 from frictionmap.files.reading import read, standard_form
 from frictionmap.files.summary import describe_file
@@ -225,6 +226,26 @@ def test_pictures_and_tables(answers, question, tmp_path):
     assert len((tmp_path / "answer.csv").read_text().splitlines()) > 10
     axes = fm.plot_design(read(answers[question]))
     assert_inside_and_apart(axes[0].figure)
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_tables_have_units_in_their_header(answers, question):
+    """P = 50 N, k1 = 10 N/mm, 2 Hz: friction in newtons, frequencies in hertz, peaks in metres."""
+    ds = read(answers[question])
+    short, every = (csv_of(ds, everything).splitlines() for everything in (False, True))
+    head, *rows = (line.split(",") for line in short)
+    values = np.array(rows, dtype=float).T
+    over_friction = "beta_search" in ds.coords
+    over = ("friction_force_N", "beta_search", 50.0), ("frequency_Hz", "r_search", 2.0)
+    first, axis, one = over[0 if over_friction else 1]
+    assert head[:2] == [first, axis]
+    np.testing.assert_allclose(values[0], one * values[1], rtol=1e-12)
+    np.testing.assert_array_equal(values[1], ds[axis])
+    in_units = {"peak_of_beta": ("m", 0.005)} if over_friction else {"beta_stick_of_r": ("N", 50.0)}
+    for name, (unit, size) in in_units.items():
+        np.testing.assert_allclose(values[head.index(f"{name}_{unit}")], size * ds[name], rtol=1e-12)
+        assert name not in head
+        assert {name, f"{name}_{unit}"} <= set(every[0].split(","))
 
 
 def test_what_is_printed(answers, capsys, tmp_path):

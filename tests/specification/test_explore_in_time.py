@@ -12,6 +12,7 @@ from urllib.parse import quote
 import numpy as np
 import pytest
 from browser import MOVE, page_of
+from layouts import words_of
 from pages import HANG, ask, packet, served
 
 import frictionmap as fm
@@ -84,6 +85,25 @@ def test_a_block_slides_as_far_as_in_the_formula_of_newmark(block, friction):
     assert rows["stops"] == "1"
     assert float(rows["place of rest"]) == pytest.approx(far, rel=1e-3)
     assert rows["slides first at"] == "0"
+
+
+def test_points_and_masses_have_their_names(tmp_path):
+    """Those of a structure given by modes are the user's, on the page and in pictures; others are numbers."""
+    points = (
+        "[system]\nmodes = { frequencies = [1.0, 3.0], shapes = [[0.6, 0.3], [0.2, -0.4]], "
+        'points = ["tip", "hub"], normalised = "mass" }\ncontact_masses = ["tip"]\nload_mass = "hub"\n'
+    )
+    chain = "[system]\nmass_ratios = [1, 1]\nstiffness_ratios = [1, 1]\n"
+    blow = '[record]\nquantity = "force"\npulse = { kind = "half-sine", amplitude = 1.0, duration = 2.0 }\n'
+    rest = "damping_ratios = 0.05\n" + blow + "[history]\nbeta = [0.2]\n"
+    for system, names in ((points, ["point tip", "point hub"]), (chain, ["mass 1", "mass 2"])):
+        motions = motions_from(tmp_path, system + rest)
+        with served(motions) as server:
+            header, _ = packet(server, "/motion")
+        assert header["masses"] == names
+        assert header["contacts"] == ["contact 1"]
+        axes = fm.plot_history(motions.follow(motions.records))
+        assert words_of(axes)[:2] == names
 
 
 def test_a_block_that_a_force_cannot_move(block):

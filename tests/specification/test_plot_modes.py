@@ -52,6 +52,24 @@ def test_modes_of_masses_and_of_a_beam_in_a_system():
     np.testing.assert_array_equal(*lines)
 
 
+def test_frequencies_of_modes_are_in_hertz(tmp_path):
+    """A cantilever has (1.8751)^2 sqrt(EI/m)/(2 pi L^2); a chain with a unit its ratio times that."""
+    (tmp_path / "beam.toml").write_text(
+        '[system]\ncontact_masses = ["tip"]\ncontact_stiffness = "5 N/mm"\n'
+        '[system.beam]\nends = "clamped-free"\nlength = "300 mm"\nbending_stiffness = "21 N m^2"\n'
+        'mass_per_length = "0.78 kg/m"\npoints = { tip = "300 mm" }\n[units]\nload = "10 N"\n'
+        "[grid]\nr = [1.0]\nbeta = [0.1]\n"
+    )
+    config = fm.load_config(tmp_path / "beam.toml")
+    hertz = 1.875104068711961**2 * np.sqrt(21.0 / 0.78) / (2.0 * np.pi * 0.3**2)
+    ax, *_ = fm.plot_modes(config.system, units=config.units)
+    assert ax.get_title() == f"mode 1, {hertz:.5g} Hz"
+    assert ax.get_xlabel() == "place on the beam [m]"
+    chain = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1])
+    ax, *_ = fm.plot_modes(chain, units=fm.Units(natural_frequency="5 Hz", mass="1 kg"))
+    assert ax.get_title() == f"mode 1, {2.5 * (np.sqrt(5.0) - 1.0):.5g} Hz"
+
+
 def test_refusals():
     beam = fm.Beam("clamped-free", **UNIT, points={"tip": 2.0})
     with pytest.raises(InputError, match=r"structure must be a frictionmap\.System, Beam, Plate or Modes"):

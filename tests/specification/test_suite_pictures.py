@@ -82,6 +82,22 @@ def test_energies_add_up_to_the_work_of_the_load(suite):
     rendered(axes)
 
 
+@pytest.mark.parametrize(
+    ("mass", "unit", "size"), [("0.5 kg", "mJ", 1e-3), ("20 kg", "J", 1.0), ("2e6 kg", "kJ", 1e3)]
+)
+def test_energies_have_the_unit_that_is_handy(mass, unit, size):
+    """The same shock of the base on a small, a larger and a very large mass."""
+    base = {"excitation": "base", "damping_reference": "base", "contact": "joined-base-wall"}
+    units = fm.Units(natural_frequency="4 Hz", mass=mass)
+    record = fm.Record.pulse("half-sine", "0.3 g", "0.1 s", unit="g")
+    system = fm.System(damping_ratios=0.1, **base)
+    ds = fm.history(system, record, beta=["0.02 g", "0.1 g"], units=units, samples="none")
+    (ax,) = fm.plot_energies(ds)
+    assert ax.get_ylabel() == f"energy [{unit}]"
+    put_in = (ds.work_friction_J + ds.work_damping_J + ds.energy_J).values.ravel()
+    np.testing.assert_allclose(ax.lines[0].get_ydata(), put_in / size, rtol=1e-12)
+
+
 @pytest.mark.parametrize("stiffness", [None, 4.0])
 def test_energies_over_time_end_with_the_works(stiffness):
     """Those of the events exactly, the damping by quadrature; with a base that moves, and a belt."""

@@ -9,6 +9,7 @@ from frictionmap import regimes
 from frictionmap.command_line.cli import main
 from frictionmap.files.summary import describe_causes, describe_file, describe_map, describe_response
 from frictionmap.model.settings import OUTPUTS
+from frictionmap.units.table import wrapped
 
 TWO = fm.System(mass_ratios=[1.0, 0.5], stiffness_ratios=[1.0, 2.0], damping_ratios=0.02)
 WIDTH, HEIGHT = 100, 42
@@ -150,6 +151,22 @@ def test_texts_of_a_file_cannot_move_the_cursor(datasets):
     assert text.splitlines()[0] == "two lines ?[2J [map]"
     assert len(text.splitlines()) <= HEIGHT
     assert all(len(line) <= WIDTH for line in text.splitlines())
+
+
+@pytest.mark.parametrize("width", range(24, 60))
+def test_no_line_ends_between_a_number_and_its_unit(width):
+    """Nor beside an equals sign; words that only begin like a unit are words."""
+    text = (
+        "r = 1 is 17.7941 Hz, beta = 1 is 100 N, a displacement of 1 is 80 um; damper 3 N s/m, 0.5 m/s2, "
+        "beam 21 N m^2, 20 % of 5 modes and 12 masses"
+    )
+    lines = wrapped(text, width)
+    assert " ".join(lines) == text
+    assert max(map(len, lines)) <= width
+    parts = ("17.7941 Hz", "100 N", "80 um", "3 N s/m", "0.5 m/s2", "21 N m^2", "20 %", "r = 1", "beta = 1")
+    assert all(any(part in line for line in lines) for part in parts)
+    narrow = wrapped("5 modes, 12 masses", 8)
+    assert narrow == ["5 modes,", "12", "masses"]
 
 
 def stops_line(ds):

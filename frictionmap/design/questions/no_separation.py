@@ -97,7 +97,7 @@ def no_separation(
     }  # fmt: skip
     asked = {"mu": task.mu, "beta": [task.low, task.high]}
     ds = answer("no-separation", system, task.band, found, asked, task.units, task.scales)
-    return ds.assign_attrs(response=task.response.describe())
+    return ds.assign_attrs(response=task.response_in_words)
 
 
 def _refuse_others(system: System) -> None:

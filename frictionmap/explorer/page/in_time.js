@@ -91,9 +91,9 @@ function paint() {
   const loops = shown.contacts.map((_, k) => ({ x: row(shown.loop_z, k), y: row(shown.loop_force, k), colour: massColour(k), width: 1.1 }));
   draw(find("#motion .of-loop"), { x: around(shown.loop_z), y: around(shown.loop_force), xName: names.slip, yName: names.friction, left: 62, lines: loops });
   find("#numbers").replaceChildren(...shown.rows.map(([name, text]) => tableRow(name, text, "words")));
-  const of = (word, numbers) => (numbers.length > 1 ? numbers.map((number, k) => keyLine(massColour(k), `${word} ${number}`)) : []);
+  const of = (named) => (named.length > 1 ? named.map((name, k) => keyLine(massColour(k), name)) : []);
   const stuck = make("span", {}, make("span", { className: "band" }), "all contacts stick");
-  find("#key").replaceChildren(...spaced([...of("mass", shown.masses), ...of("contact", shown.contacts), stuck]));
+  find("#key").replaceChildren(...spaced([...of(shown.masses), ...of(shown.contacts), stuck]));
 }
 
 /** Show a record that is being added, or why it is refused. */

@@ -12,7 +12,7 @@ from ..options import current
 from ..palette import HELD, LIMIT, LineStyle
 from ..panels import Handle
 from ..second_axes import on_the_right
-from ..words import length_unit, name_of_contact
+from ..words import length_unit, name_of_contact, names_of_masses
 from .axes import CUT, CUT_LOG, Panel, Picture, about_cut, about_peaks, in_rows, over_r, scale_of
 from .families import Family
 from .invariants import Invariant, invariant_points
@@ -104,7 +104,7 @@ def _mass_column(family: Family, quantity: str, index: int) -> MotionColumn | No
         held = None
     number = int(family.cells["dof"].values[index])
     return MotionColumn(
-        title=f"mass {number}",
+        title=names_of_masses(family.cells)[index],
         size=own[0],
         phase=own[1],
         stop=_stop(family, names.mass_stop, dof=index),

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from ..options import current
 from ..palette import sequence
 from ..panels import Handle
-from ..words import name_of_contact
+from ..words import name_of_contact, names_of_masses
 from .axes import Panel, Picture, Row, in_rows, over_r
 from .families import Family
 from .lines import draw_curve
@@ -48,8 +48,8 @@ def _motion_levels(family: Family) -> list[tuple[str, np.ndarray]]:
     found = []
     if "displacement_harmonic" in family.cells:
         values = family.cells["displacement_harmonic"].transpose("dof", *order).values
-        numbers = family.cells["dof"].values
-        found = [(f"mass {k}", levels_of(part)) for k, part in zip(numbers, values, strict=True)]
+        names = names_of_masses(family.cells)
+        found = [(name, levels_of(part)) for name, part in zip(names, values, strict=True)]
     if "contact_harmonic" in family.cells and not current().mass:
         masses = [part for _, part in found]
         for one in family.contacts("contact_harmonic"):

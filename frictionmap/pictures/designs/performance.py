@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from ...datasets.amounts import amounts_of
 from ...datasets.physical import ones_of
 from ...units.table import UNITS, handy_unit
 from ..grids import HIGH
@@ -33,12 +34,20 @@ _DASHED, _DOTTED = (0, (4, 1.5)), (0, (1.5, 1.2))
 
 
 def _measure_of(ds: xr.Dataset) -> str:
-    """Measure of the response: force or length."""
-    return "force" if "force" in str(ds.attrs.get("response", "")) else "length"
+    """Measure of the response: force or length; nothing of a share."""
+    return amounts_of(ds).measure
 
 
-def _unit_of(ds: xr.Dataset) -> str:
-    return "/ $P$" if _measure_of(ds) == "force" else f"/ {length_unit(ds)}"
+def _over(ds: xr.Dataset) -> str:
+    """What the response is over, after its name."""
+    return {"force": " / $P$", "length": f" / {length_unit(ds)}"}.get(_measure_of(ds), "")
+
+
+def _response_on_the_right(ax: Axes, ds: xr.Dataset) -> None:
+    """Add an axis of the response in its unit, if it has one."""
+    measure = _measure_of(ds)
+    if measure:
+        on_the_right(ax, ds, measure, str(ds.attrs["response"]) if measure == "force" else "")
 
 
 def in_units(ds: xr.Dataset, value: float, measure: str, largest: float) -> str:
@@ -92,9 +101,9 @@ def draw_performance(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     ax.set_xlim(0.0, right)
     ax.set_ylim(0.0, top)
     ax.set_xlabel(r"friction ratio $\beta$")
-    ax.set_ylabel(f"largest {ds.attrs.get('response', 'response')} {_unit_of(ds)}")
+    ax.set_ylabel(f"largest {ds.attrs.get('response', 'response')}{_over(ds)}")
     force_on_top(ax, ds)
-    on_the_right(ax, ds, _measure_of(ds))
+    _response_on_the_right(ax, ds)
     return handles
 
 
@@ -112,7 +121,7 @@ def draw_ridge(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     ax.plot(ratio, ds["peak_of_ratio"].values, ".-", color="black", linewidth=1.4)
     ax.plot([best], [float(ds["peak"].values[0])], "o", color=ANSWER, markersize=6.0, zorder=4.0)
     ax.set_xlabel(f"friction of contact {int(ds['second'])} / $\\beta$")
-    ax.set_ylabel(f"least peak {_unit_of(ds)}")
+    ax.set_ylabel(f"least peak{_over(ds)}")
     ax.set_ylim(bottom=0.0)
     beside = ax.twinx()
     beside.plot(ratio, ds["beta_of_ratio"].values, color=_ASIDE, linewidth=1.1, linestyle=(0, (4, 2)))
@@ -220,9 +229,9 @@ def draw_responses(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     ax.set_xlim(r[0], r[-1])
     ax.set_ylim(0.0, top)
     ax.set_xlabel(r"frequency ratio $r$")
-    ax.set_ylabel(f"{ds.attrs.get('response', 'response')} {_unit_of(ds)}")
+    ax.set_ylabel(f"{ds.attrs.get('response', 'response')}{_over(ds)}")
     frequency_on_top(ax, ds.rename(r_search="r"))
-    on_the_right(ax, ds, _measure_of(ds))
+    _response_on_the_right(ax, ds)
     return handles
 
 

@@ -9,7 +9,7 @@ from ... import regimes
 from ...errors import InputError
 from ...identify.chain.estimates import chain_names
 from ...identify.chain.response import response_and_slopes
-from ..palette import LINES
+from ..palette import MEASURED
 from .data import check_logarithms
 from .picture import FitPicture
 from .responses import LAG, ResponseCurves, ResponseSet, response_panels
@@ -32,7 +32,7 @@ def is_chain(ds: xr.Dataset) -> bool:
 def chain_picture(ds: xr.Dataset) -> FitPicture:
     """Amplitudes and lags, mass by mass, over the fitted curves; residuals over their errors below."""
     check_logarithms(ds["data"].values, ds["sigma"].values)
-    every = ResponseSet("fitted, and measured", LINES[0], 0.0, np.ones(ds.sizes["sample"], dtype=bool))
+    every = ResponseSet("fitted, and measured", MEASURED, 0.0, np.ones(ds.sizes["sample"], dtype=bool))
     panels = response_panels(_as_measured(ds), [every], _dense(ds))
     return FitPicture(panels, [], ["bars and band: one standard error"])
 

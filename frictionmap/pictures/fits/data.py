@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 
 from ...errors import InputError
 from ...files.estimates import unit_in_words
-from ..palette import CLASSES, LINES, STUCK, Shade
+from ..palette import CLASSES, LINES, MEASURED, STUCK, Shade
 from ..panels import Handle
 
 #: With more samples, error bars would hide them: the band beside the residuals shows the error instead.
@@ -24,8 +24,8 @@ _LARGEST_LOGARITHM = 600.0
 #: Of dots, and of many dots.
 _SIZE, _MANY_SIZE = 4.5, 2.8
 
-#: Dark beside light, also in grey.
-MEASURED, FITTED = LINES[3], LINES[2]
+#: Light dots beside dark lines, also in grey.
+FITTED = LINES[2]
 
 BAND: Shade = {"color": CLASSES[STUCK].colour, "alpha": 0.7, "linewidth": 0.0}
 

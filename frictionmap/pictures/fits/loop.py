@@ -3,8 +3,9 @@
 import xarray as xr
 from matplotlib.axes import Axes
 
+from ..palette import MEASURED
 from ..panels import Handle
-from .data import FITTED, MEASURED
+from .data import FITTED
 from .picture import FitPicture
 from .samples import RESIDUALS, VALUES, samples_picture
 

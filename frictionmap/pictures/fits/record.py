@@ -7,9 +7,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from ...errors import InputError
-from ..palette import LINES
+from ..palette import LINES, MEASURED
 from ..panels import Handle
-from .data import FITTED, MEASURED, Samples, draw_data, draw_residuals, in_brackets, samples_of
+from .data import FITTED, Samples, draw_data, draw_residuals, in_brackets, samples_of
 from .picture import FitPicture, Tall
 from .position import MAP_HEIGHT, Positions, fitted, fitted_system, position_panel
 from .samples import RESIDUALS, VALUES

@@ -31,7 +31,7 @@ from ..panels import (  # fmt: skip
 )
 from ..shapes import panels_of, to_draw
 from ..sizes import points
-from ..words import balanced, caption, name_of_contact
+from ..words import balanced, caption, name_of_contact, names_of_masses
 from .cell_image import CellImage
 from .regime_map import draw_frame, in_view
 from .working_point import mark_point
@@ -117,11 +117,12 @@ def _panels(ds: xr.Dataset, name: str) -> list[QuantityPanel]:
         (dim, numbers) = next(
             ((d, ds[d].values.tolist()) for d in ("dof", "contact") if d in ds[name].dims), ("", [0])
         )
+        names = dict(zip(numbers, names_of_masses(ds), strict=True)) if dim == "dof" else {}
         for number in numbers:
             cells = panel.sel(contact=number) if dim == "contact" else panel
             by = counted(ds.sel(contact=number) if dim == "contact" else ds)
             values = cells[name].sel(dof=number) if dim == "dof" else cells[name]
-            title = {"dof": f"mass {number}", "contact": f"contact {number}"}.get(dim, "")
+            title = names.get(number, f"contact {number}" if dim else "")
             numbers_of_cells = values.transpose("r", "beta").values.astype(float)
             found.append(QuantityPanel(cells, numbers_of_cells, title, _classes(cells, by), by))
     return found

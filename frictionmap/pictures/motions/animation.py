@@ -16,7 +16,7 @@ from ..palette import LINES, OPEN_COLOUR, OPEN_LABEL
 from ..panels import Handle, legend_below, new_figure, title_figure
 from ..shapes import check_holds, to_draw
 from ..sizes import finish, points, sizes
-from ..words import caption, length_unit
+from ..words import caption, length_unit, symbols_of_masses
 from .history import MOST_LABELS, check_can_be_seen, title_of
 from .in_time import draw_record, single_motion, time_words, values_in_si
 from .loops import draw_loop, draw_loops
@@ -194,9 +194,7 @@ def _colour(trace: Trace) -> str:
 
 def _draw_stage(ax: Axes, masses: xr.Dataset, traces: Sequence[Trace], words: str) -> list[Line2D]:
     """Draw a row for every mass, then one for every contact: its range, and the mark that moves."""
-    rows = [
-        (rf"$x_{{{number}}}$", x) for number, x in zip(masses["dof"].values, masses["x"].values, strict=True)
-    ]
+    rows = [*zip(symbols_of_masses(masses), masses["x"].values, strict=True)]
     rows += [(trace.label or "contact", trace.z) for trace in traces]
     marks = []
     for row, (_, values) in enumerate(rows):

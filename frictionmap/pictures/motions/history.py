@@ -20,7 +20,7 @@ from ..panels import Handle, given_axes, halo, legend_below, legend_under, new_f
 from ..second_axes import in_brackets, on_the_right, time_on_top
 from ..shapes import check_holds, check_range, to_draw
 from ..sizes import points
-from ..words import caption, length_unit, load_of, moves_base, name_of_contact
+from ..words import caption, length_unit, load_of, moves_base, name_of_contact, symbols_of_masses
 from .loops import draw_loop
 from .traces import ROUNDING, Trace, at_rest, is_at_rest, is_cosine, levels_of, load_trace, traces_of
 
@@ -172,17 +172,14 @@ def _draw_stuck(ax: Axes, turns: np.ndarray, traces: Sequence[Trace]) -> None:
 def _draw_masses(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
     """Draw every mass, with its number at the end of its line; of many masses some are numbered."""
     x = np.array([at_rest(one) for one in ds["x"].values])
-    numbers = ds["dof"].values
-    colours = in_turn(LINES, len(x))
+    names, colours = symbols_of_masses(ds), in_turn(LINES, len(x))
     for place, colour in zip(x, colours, strict=True):
         ax.plot(turns, place, color=colour, linewidth=1.2)
     _set_limits_around(ax, x)
     on_the_right(ax, ds, "length", "$x$")
     ax.set_ylabel(f"masses\n$x$ / {length_unit(ds)}")
     labelled = np.unique(np.linspace(0, len(x) - 1, min(len(x), MOST_LABELS)).round().astype(int))
-    _label_beside(
-        ax, x[labelled, -1], [rf"$x_{{{numbers[k]}}}$" for k in labelled], [colours[k] for k in labelled]
-    )
+    _label_beside(ax, x[labelled, -1], [names[k] for k in labelled], [colours[k] for k in labelled])
 
 
 def _friction_levels(ds: xr.Dataset, trace: Trace) -> tuple[dict[str, float], np.ndarray | None]:

@@ -19,6 +19,7 @@ from ..options import FigureOptions
 from ..palette import CLASSES, LINES, OPEN_COLOUR, STUCK, Shade, in_turn, sequence
 from ..panels import Handle, given_axes, legend_below, legend_under, new_figure, title_figure
 from ..shapes import check_holds, check_range, to_draw
+from ..words import names_of_masses
 from .traces import contact_colours
 
 if TYPE_CHECKING:
@@ -117,15 +118,16 @@ def _shade(ax: Axes, ds: xr.Dataset) -> None:
             ax.axvspan(begin, end, **look)
 
 
-def _draw_rows(ax: Axes, time: np.ndarray, values: np.ndarray, words: str) -> list[Handle]:
+def _draw_rows(
+    ax: Axes, time: np.ndarray, values: np.ndarray, colours: Sequence[str], names: Sequence[str]
+) -> list[Handle]:
     """Draw a line for every mass or contact; return legend entries where there are several."""
     rows = _by_rows(values)
-    colours = contact_colours(len(rows)) if words == "contact" else in_turn(LINES, len(rows))
     for row, colour in zip(rows, colours, strict=True):
         ax.plot(time, row, color=colour, linewidth=1.1)
     if len(rows) == 1:
         return []
-    return [Line2D([], [], color=colour, label=f"{words} {k}") for k, colour in enumerate(colours, 1)]
+    return [Line2D([], [], color=colour, label=name) for colour, name in zip(colours, names, strict=True)]
 
 
 def time_words(ds: xr.Dataset) -> str:
@@ -148,7 +150,9 @@ def _record_with_label(ds: xr.Dataset) -> tuple[np.ndarray, str]:
     values, ones = ds["drive"].values, ones_of(ds)
     what = str(ds["drive"].attrs.get("long_name", ""))
     if what == DRIVES["force"]:
-        values, unit = _handy(values * ones["force"], "force") if "force" in ones else (values, " / $P$")
+        values, unit = (
+            in_handy_unit(values * ones["force"], "force") if "force" in ones else (values, " / $P$")
+        )
         return values, f"load{unit}"
     if what != DRIVES["base"]:
         return values, "record"
@@ -162,12 +166,14 @@ def _draw_traces(axes: "AxesArray", ds: xr.Dataset) -> list[Handle]:
     time = ds["time"].values
     draw_record(axes[0], ds)
     x, length = values_in_si(ds, "x", "m", "m")
-    x, length = _handy(x, "length") if length else (x, " / $(P/k_1)$")
-    handles = _draw_rows(axes[1], time, x, "mass")
+    x, length = in_handy_unit(x, "length") if length else (x, " / $(P/k_1)$")
+    names = names_of_masses(ds)
+    handles = _draw_rows(axes[1], time, x, in_turn(LINES, len(names)), names)
     axes[1].set_ylabel(f"displacement{length}")
     force, newton = values_in_si(ds, "friction", "N", "N")
-    force, newton = _handy(force, "force") if newton else (force, " / $P$")
-    handles += _draw_rows(axes[2], time, force, "contact")
+    force, newton = in_handy_unit(force, "force") if newton else (force, " / $P$")
+    contacts = [f"contact {k}" for k in range(1, len(_by_rows(force)) + 1)]
+    handles += _draw_rows(axes[2], time, force, contact_colours(len(contacts)), contacts)
     axes[2].set_ylabel(f"contact force{newton}")
     axes[2].set_xlabel(time_words(ds))
     for ax in axes[1:]:
@@ -309,7 +315,7 @@ def friction_axis(ds: xr.Dataset) -> tuple[np.ndarray, str]:
     force = ds.attrs.get(SCALES["force"])
     if force is None:
         return ds["beta"].values, r"friction ratio $\beta$"
-    values, unit = _handy(ds["beta"].values * float(force), "force")
+    values, unit = in_handy_unit(ds["beta"].values * float(force), "force")
     return values, f"friction force{unit}"
 
 
@@ -317,7 +323,7 @@ def _draw_peaks(ax: Axes, ds: xr.Dataset) -> list[Handle]:
     """Draw the largest displacement of the last mass over friction: every record, and their median."""
     values, unit = values_in_si(ds, "amplitude", "m", "m")
     if unit:
-        values, unit = _handy(values, "length")
+        values, unit = in_handy_unit(values, "length")
     peaks = values[..., -1].reshape(-1, *values.shape[2:-1])  # records and scales, mu, beta
     beta, of_friction = friction_axis(ds)
     handles: list[Handle] = []
@@ -328,13 +334,13 @@ def _draw_peaks(ax: Axes, ds: xr.Dataset) -> list[Handle]:
         draw_band(ax, beta, peaks[:, k], colour)
         handles.append(Line2D([], [], color=colour, label=rf"$\mu = {mu:g}$"))
     ax.set_xlabel(of_friction)
-    of_mass = f" of mass {ds['dof'].values[-1]}" if ds.sizes["dof"] > 1 else ""
+    of_mass = f" of {names_of_masses(ds)[-1]}" if ds.sizes["dof"] > 1 else ""
     ax.set_ylabel(f"largest displacement{of_mass}{unit}")
     ax.set_ylim(bottom=0.0)
     return handles
 
 
-def _handy(values: np.ndarray, measure: str) -> tuple[np.ndarray, str]:
+def in_handy_unit(values: np.ndarray, measure: str) -> tuple[np.ndarray, str]:
     """Values in SI units in the unit that is handy for the largest one, and this unit in brackets."""
     unit = handy_unit(float(np.nanmax(np.abs(values), initial=0.0)) or 1.0, measure)
     return values / float(UNITS[unit].size), f" [{unit}]"

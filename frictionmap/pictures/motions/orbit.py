@@ -16,7 +16,7 @@ from ..panels import Handle, given_axes, grid_of_panels, legend_below, legend_un
 from ..second_axes import length_on_top
 from ..shapes import check_holds, to_draw
 from ..sizes import points
-from ..words import caption, length_unit
+from ..words import caption, length_unit, names_of_masses
 from .history import MOST_LABELS, check_can_be_seen, is_a_mass, title_of
 from .loops import draw_arrow, draw_loop, draw_stops
 from .traces import CONTACT_COLOUR, at_rest, is_at_rest, traces_of
@@ -95,8 +95,8 @@ def _draw_spectrum(ax: Axes, ds: xr.Dataset) -> None:
 
 def _handles(ds: xr.Dataset) -> list[Handle]:
     """Legend entries of the masses, the first ones if there are many, and of the contact."""
-    named = zip(ds["dof"].values[:MOST_LABELS], _colours(ds), strict=False)
-    handles: list[Handle] = [Line2D([], [], color=colour, label=f"mass {k}") for k, colour in named]
+    named = zip(names_of_masses(ds)[:MOST_LABELS], _colours(ds), strict=False)
+    handles: list[Handle] = [Line2D([], [], color=colour, label=name) for name, colour in named]
     traces = traces_of(ds)
     if traces[0].label:
         handles += [

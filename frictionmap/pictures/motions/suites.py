@@ -21,6 +21,7 @@ from .in_time import (
     drawn_peak,
     end_picture,
     friction_axis,
+    in_handy_unit,
     of_one_system,
     one_motion,
     one_panel,
@@ -184,9 +185,12 @@ def _over_time(ds: xr.Dataset, axes: "AxesArray", is_new: bool) -> "AxesArray":
 
 
 def _stack(ax: Axes, at: np.ndarray, layers: list[np.ndarray], joule: str) -> None:
-    """Draw layers above each other, and their sum."""
-    ax.stackplot(at, layers, colors=LINES[:3], alpha=0.55, linewidth=0.0)
-    ax.plot(at, np.sum(layers, axis=0), color="black", linewidth=1.2)
+    """Draw layers above each other, and their sum; joules in the unit that is handy for them."""
+    drawn = np.array(layers)
+    if joule:
+        drawn, joule = in_handy_unit(drawn, "work")
+    ax.stackplot(at, drawn, colors=LINES[:3], alpha=0.55, linewidth=0.0)
+    ax.plot(at, drawn.sum(axis=0), color="black", linewidth=1.2)
     ax.set_ylabel(f"energy{joule}")
     ax.margins(x=0.0)
     ax.set_ylim(bottom=0.0)

@@ -9,7 +9,7 @@ from xarray.indexes import PandasIndex
 
 from ..model.settings import Solver
 from ..model.system import System
-from ..units.scales import Units
+from ..units.scales import OF_MODEL, Units
 from ..version import __version__
 from .labels import BESIDE, COORDINATES, REFERENCES, attributes, labels_of
 from .provenance import excitation_of, made_by
@@ -85,6 +85,7 @@ def stamp(
     units: Units | None = None,
 ) -> xr.Dataset:
     """Add the global attributes of a dataset that a function of the package computed on these axes."""
+    hertz = units is not None and units.natural_frequency == OF_MODEL
     ds.attrs = {
         "Conventions": "CF-1.11",
         "title": title,
@@ -92,7 +93,7 @@ def stamp(
         "references": REFERENCES,
         "system": system.describe(),
         "excitation": excitation_of(system),
-        **(system.costs(np.atleast_1d(axes["r"])) if "r" in axes else {}),
+        **(system.costs(np.atleast_1d(axes["r"]), hertz) if "r" in axes else {}),
         **made_by(function, title, system, axes, solver, curves, study, units),
     }
     return ds

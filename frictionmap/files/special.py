@@ -65,7 +65,8 @@ band = {}
 #: Motions in time under a force on the loaded point, commented out: in units and in ratios.
 _MOTION = """\
 #[record]                         # for motions in time: frictionmap history
-#unit = "N"                       # a force on load_mass
+#quantity = "force"               # on load_mass
+#unit = "N"
 #pulse = { kind = "half-sine", amplitude = "20 N", duration = "10 ms" }      # or file = "blow.csv"
 #[history]
 #friction = ["2 N", "5 N"]

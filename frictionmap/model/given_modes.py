@@ -222,14 +222,18 @@ def _base_parts(
     return modes.participation * (frequency / np.sqrt(stiffness)), modes.influence, rest
 
 
-def describe_modes(system: Owner) -> str:
-    """Describe the modes that a structure is given by: how many, frequencies, and what they leave out."""
+def describe_modes(system: Owner, hertz: bool = False) -> str:
+    """Describe the modes that a structure is given by: how many, frequencies, and what they leave out.
+
+    hertz : whether they are in SI units
+    """
     modes, points = system.matrices, system.contact_system.points
     assert isinstance(modes, Modes)
     assert points is not None
     rates = ", ".join(f"{w / (2.0 * np.pi):.5g}" for w in modes.frequencies[:_SHOWN])
     more = ", ..." * (modes.frequencies.size > _SHOWN)
-    words = [f"{modes.w.size} modes, natural frequencies over 2 pi {rates}{more}"]
+    frequencies = f"{rates}{more} Hz" if hertz else f"over 2 pi {rates}{more}"
+    words = [f"{modes.w.size} modes, natural frequencies {frequencies}"]
     groups = system.contact_system.groups
     if points.residual is not None:
         words += [

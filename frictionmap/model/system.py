@@ -635,8 +635,10 @@ class System(Shown):
         left_out = self._damped_modes.left_out
         return None if left_out is None else left_out.error(self.modes, r)
 
-    def costs(self, r: np.ndarray) -> dict[str, str]:
+    def costs(self, r: np.ndarray, hertz: bool = False) -> dict[str, str]:
         """Describe the errors of reduction and decoupling in the range of r.
+
+        hertz : whether frequencies of modes are in SI units
 
         Raises
         ------
@@ -647,7 +649,7 @@ class System(Shown):
         reduced, decoupled = self.accuracy(r), self.decoupling(r)
         where = f", for r = {r[0]:g} to {r[-1]:g}"
         if self.by_modes:
-            words["modes"] = describe_modes(self)
+            words["modes"] = describe_modes(self, hertz)
         if reduced is not None:
             words["reduction"] = f"{reduced.describe()}{where}; {reduced.beyond()}"
         if decoupled is not None:

@@ -506,7 +506,10 @@ def _unit(given: object, quantity: str) -> str:
     unit = known_unit(given) if isinstance(given, str) else None
     if unit is None or UNITS[unit].measures != KINDS[quantity]:
         valid = units_of(KINDS[quantity])
-        hint = f": it is a unit of {UNITS[unit].measures}" if unit else ""
+        measures = UNITS[unit].measures if unit else ""
+        meant = next((name for name, kind in KINDS.items() if kind == measures), "")
+        hint = f": it is a unit of {measures}" if unit else ""
+        hint += f'; give quantity = "{meant}"' if meant else ""
         raise InputError(
             "unit",
             f"must be one of {', '.join(valid)} for this quantity, {quantity}; got "

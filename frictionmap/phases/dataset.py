@@ -9,7 +9,13 @@ from .. import checks
 from .._kernels.phases.problem import ELASTIC, RIGID
 from ..datasets.labels import BESIDE, LABELS, PER_CONTACT, attributes
 from ..datasets.variables import coordinate, label_variable
-from ..general.dataset import chosen_outputs, contact_coordinates, contact_variable, refuse_static
+from ..general.dataset import (
+    chosen_outputs,
+    contact_coordinates,
+    contact_variable,
+    mass_coordinates,
+    refuse_static,
+)
 from ..general.normal_limits import limit_variables
 from ..general.outputs import is_of_masses
 from ..jobs import Progress, Watch
@@ -150,7 +156,7 @@ def phase_map(
     with_belt_regimes(variables, general)
     coords = {name: coordinate(name, values) for name, values in axes.items()}
     if any(is_of_masses(name) for name in names):
-        coords["dof"] = coordinate("dof", np.array(system.dofs.numbers))
+        coords |= mass_coordinates(system)
     coords |= contact_coordinates(system)
     if any(name in OF_SPRINGS for name in names):
         coords |= spring_coordinates(system)

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from .. import checks
 from ..errors import InputError
 from ..model.system import System
+from ..structures.dofs import POINT
 from ..structures.modes import Modes
 from ..structures.uniform import Beam, Plate
 from ..units.scales import OF_MODEL, Units, scales_of
@@ -40,7 +41,7 @@ def _structure_of(given: object) -> Beam | Plate | Modes:
         return found
     if isinstance(given, System):
         modes, dofs = given.modes, given.dofs
-        names = dofs.written_labels or [f"{dofs.noun} {number}" for number in dofs.numbers]
+        names = dofs.written_labels or [str(number) for number in dofs.numbers]
         return Modes(modes.w, 0.0, modes.phi, names, source="masses without friction")
     raise InputError(
         "structure", f"must be a frictionmap.System, Beam, Plate or Modes; got {checks.one_line(given)}"
@@ -79,8 +80,8 @@ def _draw_plate(ax: Axes, plate: Plate, k: int, length: str) -> None:
     ax.set_ylabel(f"$y${length}")
 
 
-def _draw_points(ax: Axes, modes: Modes, k: int) -> None:
-    """Draw a mode at points, side by side."""
+def _draw_points(ax: Axes, modes: Modes, k: int, noun: str) -> None:
+    """Draw a mode at points, or of masses, side by side."""
     place = np.arange(len(modes.points))
     values = modes.shapes[:, modes.rigid_modes + k]
     ax.axhline(0.0, color="0.6", linewidth=0.8)
@@ -89,7 +90,7 @@ def _draw_points(ax: Axes, modes: Modes, k: int) -> None:
     ax.set_xlim(-0.5, len(place) - 0.5)
     shown = place[:: -(-len(place) // _NAMED)]
     ax.set_xticks(shown, [modes.points[k] for k in shown])
-    ax.set_xlabel("point")
+    ax.set_xlabel(noun)
     ax.set_ylabel("shape")
 
 
@@ -162,13 +163,14 @@ def plot_modes(
     else:
         axes = given_axes(ax, len(draw), "one for each mode")
     length = " [m]" if units is not None and units.natural_frequency == OF_MODEL else ""
+    noun = structure.dofs.noun if isinstance(structure, System) else POINT
     for one, k in zip(axes, draw, strict=True):
         if isinstance(found, Beam):
             _draw_beam(one, found, k, length)
         elif isinstance(found, Plate):
             _draw_plate(one, found, k, length)
         else:
-            _draw_points(one, found, k)
+            _draw_points(one, found, k, noun)
         frequency = found.frequencies[k]
         words = f"mode {k + 1}, {_frequency_words(structure, frequency, units)}"
         one.set_title(words, fontsize=points(10.0, "axes.titlesize"))

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from ..datasets.physical import with_units
 from ..datasets.variables import stamp
+from ..general.dataset import mass_coordinates
 from ..jobs import Progress
 from ..model.settings import Quantity, Solver, SolverSettings, curve_settings, merged
 from ..model.system import System
@@ -115,6 +116,7 @@ def curves(
     if wanted.harmonics:
         axes |= {"harmonic": np.arange(wanted.harmonics + 1), "part": PARTS}
     ds = engine_of(system).curves(axes, solver, wanted, threads, progress)
+    ds = ds.assign_coords(mass_coordinates(system)) if system.by_modes else ds
     ds = stamp(ds, "curves", "Response curves", system, grid, solver, asdict(wanted), units=units)
     ds.attrs |= reduction_check(system, grid, solver, threads)
     return with_units(ds, scales)

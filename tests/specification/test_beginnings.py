@@ -120,7 +120,7 @@ def test_special_templates_run_with_the_commands_that_they_name(kind, numbers, t
     text = (tmp_path / "map.toml").read_text(encoding="utf-8")
     tree = tomllib.loads(text)
     SCHEMA.validate(tree)
-    assert len(text.splitlines()) <= 27
+    assert len(text.splitlines()) <= 28
     few = ["--set", "grid.beta.num=2", "--quiet"]
     for key in ("r", "wall_speed"):
         if key in tree["grid"]:

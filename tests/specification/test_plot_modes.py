@@ -1,5 +1,7 @@
 """Pictures of modes: what is drawn is the modes of the structure, at its points."""
 
+import re
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -65,6 +67,9 @@ def test_frequencies_of_modes_are_in_hertz(tmp_path):
     ax, *_ = fm.plot_modes(config.system, units=config.units)
     assert ax.get_title() == f"mode 1, {hertz:.5g} Hz"
     assert ax.get_xlabel() == "place on the beam [m]"
+    curves = fm.curves(config)
+    assert f"natural frequencies {hertz:.5g}, " in curves.attrs["modes"]
+    assert re.search(r"\d, \.\.\. Hz; ", curves.attrs["modes"])
     chain = fm.System(mass_ratios=[1, 1], stiffness_ratios=[1, 1])
     ax, *_ = fm.plot_modes(chain, units=fm.Units(natural_frequency="5 Hz", mass="1 kg"))
     assert ax.get_title() == f"mode 1, {2.5 * (np.sqrt(5.0) - 1.0):.5g} Hz"

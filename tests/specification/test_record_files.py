@@ -341,3 +341,9 @@ def test_units_of_another_kind(unit):
         InputError, match=r"unit must be one of m/s\^2, .* for this quantity, acceleration; got"
     ):
         Record(VALUES, 0.1, unit=unit)
+
+
+def test_a_unit_of_another_kind_names_its_quantity():
+    with pytest.raises(InputError, match=r"it is a unit of force; give quantity = .force.$"):
+        Record(VALUES, 0.1, unit="N")
+    assert Record(VALUES, 0.1, unit="N", quantity="force").unit == "N"

@@ -177,7 +177,7 @@ def _draw_masses(ax: Axes, ds: xr.Dataset, turns: np.ndarray) -> None:
         ax.plot(turns, place, color=colour, linewidth=1.2)
     _set_limits_around(ax, x)
     on_the_right(ax, ds, "length", "$x$")
-    ax.set_ylabel(f"masses\n$x$ / {length_unit(ds)}")
+    ax.set_ylabel(f"{'points' if 'point_name' in ds.coords else 'masses'}\n$x$ / {length_unit(ds)}")
     labelled = np.unique(np.linspace(0, len(x) - 1, min(len(x), MOST_LABELS)).round().astype(int))
     _label_beside(ax, x[labelled, -1], [names[k] for k in labelled], [colours[k] for k in labelled])
 

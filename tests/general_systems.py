@@ -7,7 +7,7 @@ from frictionmap._kernels.general.problem import Problem
 from frictionmap._kernels.general.series import Friction
 from frictionmap._kernels.general.steady import REPEATS
 from frictionmap.general.problem import ties
-from frictionmap.general.recorded import recorded_state
+from frictionmap.general.recorded import Memory, recorded_state
 
 KINDS = {"wall": "fixed-wall", "base": "joined-base-wall", "masses": "between-masses"}
 
@@ -73,7 +73,12 @@ class Solved:
             start = np.asarray(further["state"], dtype=float)
         kinetic, static = (np.asarray(values, dtype=float) for values in friction)
         self.found, halves, self.multiplier, self.counts, self.record, *_ = recorded_state(
-            problem, 0, Friction(kinetic, static), start, (2000, 1e-12), np.ascontiguousarray(phi), 0
+            problem,
+            0,
+            Friction(kinetic, static),
+            start,
+            (2000, 1e-12),
+            Memory(problem, np.ascontiguousarray(phi), 0),
         )
         self.resolved = self.found.status == REPEATS
         self.period = halves // 2

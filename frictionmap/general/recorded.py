@@ -28,7 +28,7 @@ class Memory:
 
     problem : one of them
     masses : see `make_record`
-    most : steps that there is room for at first
+    most : steps that there is room for at first; 0: none are kept
     """
 
     def __init__(self, problem: Problem, masses: np.ndarray, most: int) -> None:
@@ -62,7 +62,8 @@ def recorded_state(
         )
         workspace = memory.workspace
         record, steps = workspace.record, int(workspace.record.count[0])
-        if steps <= record.steps.shape[0]:
+        room = record.steps.shape[0]
+        if steps <= room or room == 0:
             counts, h = workspace.memory.counts, float(workspace.row.numbers[H])
             return Recorded(found, halves, multiplier, counts, record, h, steps)
         memory.make_room(2 * steps)

@@ -9,7 +9,7 @@ from frictionmap._kernels.general.counts import CROSSINGS, STOPS
 from frictionmap._kernels.general.series import Friction
 from frictionmap.general.boundaries import friction_lines
 from frictionmap.general.problem import problem_of
-from frictionmap.general.recorded import recorded_state
+from frictionmap.general.recorded import Memory, recorded_state
 
 FALLING = {"speed": [0.0, 0.5], "factor": [1.0, 0.7], "slope": 0.1}
 STRIBECK = {"speed": [0.0, 0.2, 0.6], "factor": [1.0, 0.75, 0.8], "slope": 0.15}
@@ -279,7 +279,12 @@ def from_state(system, r, x, rate, tau):
     start = np.zeros((3, x.size))
     start[0], start[1], start[2] = modal.phi.T @ modal.mass @ x, modal.phi.T @ modal.mass @ rate, tau
     found = recorded_state(
-        problem, 0, Friction(kinetic.sum(axis=1), static[0].sum(axis=1)), start, (2000, 1e-12), modal.phi
+        problem,
+        0,
+        Friction(kinetic.sum(axis=1), static[0].sum(axis=1)),
+        start,
+        (2000, 1e-12),
+        Memory(problem, modal.phi, 64),
     )
     return found.record.ranges[:, kinetic.shape[0] :], found.found.halves // 2, found.counts
 

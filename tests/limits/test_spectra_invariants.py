@@ -57,7 +57,7 @@ def test_a_record_turned_over_turns_the_motion_over():
 def test_a_cell_has_the_same_bits_alone_among_others_and_on_any_number_of_threads(interpolation):
     given = records(2, interpolation=interpolation)
     whole = spectrum(given, PERIODS, FRICTION, mu=[1.0, 1.5], damping=0.05, threads=1)
-    assert whole.identical(spectrum(given, PERIODS, FRICTION, mu=[1.0, 1.5], damping=0.05, threads=3))
+    assert whole.equals(spectrum(given, PERIODS, FRICTION, mu=[1.0, 1.5], damping=0.05, threads=3))
     for at in ((0, 0, 0, 0, 0), (1, 0, 1, 3, 2), (1, 0, 0, 5, 3)):
         alone = spectrum(
             given[at[0]], PERIODS[at[3]], FRICTION[at[4]], mu=whole.mu.values[at[2]], damping=0.05
@@ -91,7 +91,7 @@ def test_blocks_of_a_record_give_the_same_bits(monkeypatch, interpolation):
     given, periods = records(interpolation=interpolation), [0.02, 0.3, 2.0, np.inf]
     whole = spectrum(given, periods, FRICTION, mu=1.2, damping=0.05)
     monkeypatch.setattr(lanes, "_BLOCK", 40)
-    assert spectrum(given, periods, FRICTION, mu=1.2, damping=0.05).identical(whole)
+    assert spectrum(given, periods, FRICTION, mu=1.2, damping=0.05).equals(whole)
 
 
 def test_a_stiff_mass_rests_where_its_spring_holds_the_load():

@@ -75,7 +75,7 @@ def _steady():
 
 @pytest.mark.parametrize("springs", [[], FAR])
 @pytest.mark.parametrize("load", [-1.0, -3.0, 2.0])
-def test_the_law_decides_at_once_where_a_motion_goes_on_under_another_load(springs, load):
+def test_the_law_decides_at_once_where_a_motion_continues_under_another_load(springs, load):
     """As from the same displacements and velocities."""
     steady = _steady()
     system = fm.System(contacts=[fm.Contact(masses=[2])], springs=springs or None, **CHAIN)
@@ -89,7 +89,7 @@ def test_the_law_decides_at_once_where_a_motion_goes_on_under_another_load(sprin
 
 @pytest.mark.parametrize("springs", [[], FAR])
 @pytest.mark.parametrize("time", [1, 2, 4])
-def test_springs_slip_at_once_where_a_motion_goes_on_with_less_friction(springs, time):
+def test_springs_slip_at_once_where_a_motion_continues_with_less_friction(springs, time):
     """As a bank of one element does, whose elongations are limited where it begins."""
     values = np.array([1.0, 2.0, -1.0, 1.5, -2.0, 1.0])
     found = []

@@ -87,8 +87,8 @@ def structure_of(system: System, opens: bool = False) -> Structure:
         raise InputError(
             "cannot use",
             "normal_record",
-            "with a residual flexibility that couples contacts; use with_residual = false of a beam or "
-            "plate, or omit residual",
+            "with a residual flexibility that couples contacts: a slider that slips at once under less "
+            "normal load would move the others; use with_residual = false of a beam or plate, or omit residual",
         )
     if any(group.first.nu for group in general.groups):
         raise InputError(

@@ -56,7 +56,7 @@ def test_one_screen_of_plain_text(datasets, kind):
         assert float(row[1]) == pytest.approx(float(datasets[kind].estimate.sel(parameter=name)), rel=1e-5)
 
 
-def test_where_the_data_came_from(tmp_path, capsys):
+def test_source_of_data(tmp_path, capsys):
     rows = [f"{t:.6g};{x:.6g}" for t, x in zip(*synthetic(TRUTH, 1), strict=True)]
     (tmp_path / "decay.csv").write_text("\n".join(["time_s;x_mm", *rows]))
     (tmp_path / "rig.toml").write_text('title = "Frame"\n[data]\nkind = "free-decay"\nfile = "decay.csv"\n')

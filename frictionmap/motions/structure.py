@@ -88,7 +88,8 @@ def structure_of(system: System, opens: bool = False) -> Structure:
             "cannot use",
             "normal_record",
             "with a residual flexibility that couples contacts: a slider that slips at once under less "
-            "normal load would move the others; use with_residual = false of a beam or plate, or omit residual",
+            "normal load would move the others; use with_residual = false of a beam or plate, or omit "
+            "residual",
         )
     if any(group.first.nu for group in general.groups):
         raise InputError(

@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 
 from .. import checks
-from ..datasets.variables import coordinate, label_variable
-from ..general.dataset import chosen_outputs, contact_coordinates, mass_coordinates, refuse_static
+from ..datasets.variables import coordinate, label_variable, mass_coordinates
+from ..general.dataset import chosen_outputs, contact_coordinates, refuse_static
 from ..general.outputs import depends_on_places, is_of_masses
 from ..jobs import Progress, Watch
 from ..model.settings import Solver

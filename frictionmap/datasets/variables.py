@@ -26,6 +26,14 @@ def coordinate(name: str, values: np.ndarray | float) -> xr.Variable:
     return xr.Variable(dims, values, {"long_name": label.long_name, **units})
 
 
+def mass_coordinates(system: System) -> dict[str, xr.Variable]:
+    """Coordinates along the masses, or along points with their names."""
+    found = {"dof": coordinate("dof", np.array(system.dofs.numbers))}
+    if system.by_modes:
+        found["point_name"] = coordinate("point_name", np.array(system.dofs.written_labels))
+    return found
+
+
 def indexed(axes: Mapping[str, np.ndarray]) -> xr.Coordinates:
     """Labelled coordinates of axes, one dimension each.
 

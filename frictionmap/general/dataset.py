@@ -9,7 +9,7 @@ import xarray as xr
 from .. import checks
 from .._kernels.general.fill import NO_PLACES
 from ..datasets.labels import LABELS, PER_CONTACT, attributes, with_contact
-from ..datasets.variables import coordinate, label_variable
+from ..datasets.variables import coordinate, label_variable, mass_coordinates
 from ..errors import InputError
 from ..jobs import Progress, Watch
 from ..model.general import ContactSystem
@@ -105,15 +105,6 @@ def contact_coordinates(system: System) -> dict[str, xr.Variable]:
         found["contact"] = coordinate("contact", np.arange(1, general.count + 1))
         names = np.array([group.name for group in general.groups])
         found["contact_name"] = xr.Variable(("contact",), names, {"long_name": "name of the contact"})
-    return found
-
-
-def mass_coordinates(system: System) -> dict[str, xr.Variable]:
-    """Coordinates along the masses, or along points with their names."""
-    found = {"dof": coordinate("dof", np.array(system.dofs.numbers))}
-    if system.by_modes:
-        names = np.array(system.dofs.written_labels)
-        found["point_name"] = xr.Variable(("dof",), names, {"long_name": "name of the point"})
     return found
 
 

@@ -9,7 +9,7 @@ import xarray as xr
 from .. import regimes
 from .._kernels.general.problem import SECTION
 from ..datasets.labels import CONTACT_TRACES, EXCERPT, LABELS, OLDER_NAMES, PER_CONTACT
-from ..datasets.variables import coordinate, label_variable
+from ..datasets.variables import coordinate, label_variable, mass_coordinates
 from ..model.general import ContactSystem
 from ..model.settings import HARMONICS, RECORDED, Solver
 from ..model.system import System
@@ -18,7 +18,6 @@ from .cycle import cycle_values
 from .dataset import (
     boundary_variables,
     contact_coordinates,
-    mass_coordinates,
     refuse_static,
     segments_of,
 )

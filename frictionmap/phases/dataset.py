@@ -8,12 +8,11 @@ import xarray as xr
 from .. import checks
 from .._kernels.phases.problem import ELASTIC, RIGID
 from ..datasets.labels import BESIDE, LABELS, PER_CONTACT, attributes
-from ..datasets.variables import coordinate, label_variable
+from ..datasets.variables import coordinate, label_variable, mass_coordinates
 from ..general.dataset import (
     chosen_outputs,
     contact_coordinates,
     contact_variable,
-    mass_coordinates,
     refuse_static,
 )
 from ..general.normal_limits import limit_variables

@@ -8,9 +8,9 @@ import xarray as xr
 
 from .._kernels.phases.problem import SECTION
 from ..datasets.labels import CONTACT_TRACES, EXCERPT, LABELS, OLDER_NAMES
-from ..datasets.variables import coordinate, label_variable
+from ..datasets.variables import coordinate, label_variable, mass_coordinates
 from ..errors import NoSteadyState
-from ..general.dataset import contact_coordinates, mass_coordinates, refuse_static
+from ..general.dataset import contact_coordinates, refuse_static
 from ..general.normal_limits import limit_variables
 from ..general.response import contact_trace, load_over, of_cell
 from ..model.settings import HARMONICS, Solver

@@ -9,8 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..datasets.physical import with_units
-from ..datasets.variables import stamp
-from ..general.dataset import mass_coordinates
+from ..datasets.variables import mass_coordinates, stamp
 from ..jobs import Progress
 from ..model.settings import Quantity, Solver, SolverSettings, curve_settings, merged
 from ..model.system import System

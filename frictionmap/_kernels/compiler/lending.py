@@ -50,7 +50,7 @@ class _Lent:
         self.address = self._memory.ctypes.data
 
 
-#: Layouts of tuples, and their types in numba, by what `_describe` tells of them: numba takes milliseconds.
+#: Layouts of tuples, and their types in numba, by the result of `_describe`: numba takes milliseconds.
 _LAYOUTS: dict[tuple, tuple[struct.Struct, Packed]] = {}
 
 

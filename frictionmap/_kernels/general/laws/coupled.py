@@ -185,7 +185,7 @@ def find_pattern(problem, motion, box):
 
 @kernel
 def begin_phases(problem, motion, contact, box):
-    """Set the forces of the contacts at their limits, and the leading zeros of what is watched in them.
+    """Set the forces of the contacts at their limits, and the leading zeros of the watched quantities.
 
     contact : that whose force has reached its limit; -1: none
     """

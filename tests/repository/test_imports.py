@@ -111,6 +111,17 @@ print(statuses, heavy)
     assert run(code) == "[200, 200, 200, 200] []\n"
 
 
+def test_functions_for_any_system_load_no_engine_before_they_are_called():
+    """That of several contacts alone takes a third of a second of every first call for one mass."""
+    code = """
+import sys, frictionmap as fm
+print(len([fm.sweep, fm.boundaries, fm.curves, fm.response]))
+rooms = ("frictionmap.general.", "frictionmap.phases.", "frictionmap.banks.")
+print([name for name in sys.modules if name.startswith(rooms)])
+"""
+    assert run(code).splitlines() == ["4", "[]"]
+
+
 def test_kernels_know_numbers_and_codes_only():
     legal = (
         "numpy",

@@ -488,11 +488,12 @@ def test_a_page_as_a_file_needs_no_server(browser, tmp_path):
             return seen[np.ix_(*places)]
 
         np.testing.assert_array_equal(middles(), maps(1.0, 0.0))
-        page.mouse.click(*point(page, 0.2, 0.7))  # r = 0.4, beta = 0.84: beta_stick is 1/mu
-        regime = "() => document.querySelector('#motion .regime')?.innerText"
-        page.wait_for_function(f"{regime} === 'Stick-slip'")
+        page.mouse.click(*point(page, 0.14, 0.52))  # the file has 4 x 3 motions; beta_stick is 1/mu
+        shown = "() => document.querySelector('#motion h2')?.textContent"
+        place = "selected, nearest in this file: r = 0.275, β = 0.62"
+        page.wait_for_function(f"{shown} === 'Stick-slip {place}'")
         repainted(page, lambda: page.evaluate(MOVE, ["mu", 1]))
-        page.wait_for_function(f"{regime} === 'Permanent sticking'")
+        page.wait_for_function(f"{shown} === 'Permanent sticking {place}'")
         page.keyboard.press("Escape")
         repainted(page, lambda: page.evaluate(MOVE, ["damping_ratios", 1]))
         mu, zeta = (

@@ -528,6 +528,28 @@ def test_it_fits_any_width(browser, one, width):
         assert area(page)[2] > 200
 
 
+HELD = """() => {
+  const message = document.querySelector('#message');
+  message.hidden = false;
+  message.textContent = 'Shown: 298 × 210 cells. The finest map, 596 × 420 cells, would take about 33 s. ';
+  message.append(document.createElement('button'));
+  message.lastChild.textContent = 'Compute it';
+  return document.querySelector('#work').scrollHeight - document.querySelector('#work').clientHeight;
+}"""
+
+
+@pytest.mark.parametrize("lecture", ["", "&lecture=on"])
+@pytest.mark.parametrize("width", [1000, 1280, 1920])
+def test_a_message_does_not_resize_the_map(browser, one, width, lecture):
+    """A map that it resized would be computed again, with another message, and so on without end."""
+    address = f"{one.url}#cell=0.3,0.5{lecture}"
+    with page_of(browser, address, viewport={"width": width, "height": 800}) as page:
+        page.wait_for_selector("#motion h2")
+        before = area(page)
+        assert page.evaluate(HELD) <= 0  # nothing of it is outside of its room
+        assert area(page) == before
+
+
 def test_the_page_unpacks_the_packets_of_the_server(browser, one):
     """A packet of the server, unpacked by the page, is what Python unpacks."""
     with page_of(browser, one.url) as page:

@@ -57,6 +57,27 @@ def test_doubled_contacts():
     assert found == pytest.approx(np.stack((wanted, wanted), axis=1), abs=1e-11 * wanted.max())
 
 
+@pytest.mark.parametrize(
+    ("n", "stiffness"),
+    [(9, None), (9, 2.0), (12, None)] + [pytest.param(n, None, marks=pytest.mark.slow) for n in (20, 33)],
+)
+def test_the_bits_of_a_cell_do_not_depend_on_others(n, stiffness):
+    """Rows of cells at once, every other cell, and cell by cell, on one and two threads."""
+    rng = np.random.default_rng(n)
+    system = frame(n, friction=rng.uniform(0.3, 1.0, n), stiffness=stiffness)
+    r = np.array([2.0, 5.0]) * system.modes.w[0]
+    stick = fm.boundaries(system, r)["beta_noslip" if stiffness else "beta_stick"].min().item()
+    beta = stick * np.linspace(0.05, 1.1, 12 if n < 12 else 6 if n < 33 else 3)
+    outputs = ("contact_amplitude", "contact_midpoint", "sliding_distance", "stuck_fraction", "multiplier")
+    whole = fm.sweep(system, r, beta, outputs=outputs, threads=1)
+    assert (whole.status == fm.regimes.RESOLVED).all()
+    assert np.unique(whole.contact_amplitude).size > n
+    assert whole.equals(fm.sweep(system, r, beta, outputs=outputs, threads=2))
+    for part in (slice(0, None, 2), slice(1, None, 2), *([k] for k in range(beta.size))):
+        alone = fm.sweep(system, r, beta[part], outputs=outputs, threads=2)
+        assert alone.equals(whole.isel(beta=part)), part
+
+
 @pytest.mark.parametrize("n", [9, 16, 32])
 def test_second_starts(n):
     """A motion from rest and one from far away end alike: n contacts of random friction, rigid or elastic."""

@@ -15,25 +15,22 @@ from ..compiler.vectors import LANES, filled, least, load, mask_above, most, sto
 from .crossings import fill_controls
 from .laws.contact import has_tables
 from .laws.kinds import state_size
-from .laws.speed import has_law
 from .problem import SECTION, WIDTH, F, H, P, Q, first_contact_row, varies
+from .row import keeps_parts
 from .series import Friction, advance, expand
-from .tangent import fill_slot, find_slot
+from .tangent import pattern_slot
 
 _ALL = 2**LANES - 1
-
-#: Contacts whose patterns have their parts filled at once.
-_FEW = 8
 
 
 @inner_kernel
 def can_glide(problem, row):
-    """Whether intervals can be passed: loads are kept, normal loads constant, no spring is behind a belt, no
-    friction depends on the speed, and no contacts close loops.
+    """Whether intervals can be passed: loads and parts are kept, normal loads constant, no spring is behind a
+    belt, no friction depends on the speed, and no contacts close loops.
     """
-    if 2 * row.intervals[0] * problem.push.shape[1] > row.loads.shape[0]:
+    if not keeps_parts(problem) or 2 * row.intervals[0] * problem.push.shape[1] > row.loads.shape[0]:
         return False
-    possible = not has_law(problem) and not problem.loops
+    possible = not problem.loops
     for j in range(problem.spring.size):
         possible = possible and has_tables(problem, j) and not varies(problem, j)
     return possible
@@ -219,16 +216,6 @@ def _stays(row, friction, motion, j, first, units, at):
     return mask_above(low, -limit) == _ALL and mask_above(limit, high) == _ALL
 
 
-@inner_kernel
-def _visits_before(problem):
-    """Intervals that begin with a pattern before its parts are filled, which takes as long as all of these.
-
-    Few contacts have few patterns, each of which comes back.
-    """
-    contacts = problem.spring.size
-    return state_size(problem) + contacts if contacts > _FEW else 0
-
-
 @late_kernel(bool)
 def glide(problem, row, friction, interval, motion):
     """Move the state to the end of an interval, if nothing watched can reach its limit there.
@@ -247,11 +234,7 @@ def glide(problem, row, friction, interval, motion):
         if motion.fresh[j] != 0:
             return False
     contacts, size = problem.spring.size, state_size(problem)
-    slot = find_slot(problem, row, motion)
-    if row.visits[slot] < _visits_before(problem):
-        row.visits[slot] += 1
-        return False
-    fill_slot(problem, row, motion, slot)
+    slot = pattern_slot(problem, row, motion)
     at = slot * 2 * row.intervals[0] + interval
     parts = row.parts
     if parts.loads_known[at] != row.patterns[slot] or parts.known[slot] != row.patterns[slot]:

@@ -172,7 +172,6 @@ class Row(NamedTuple):
     parts: Parts
     kinetic: np.ndarray  # (N,) kinetic friction of the tables where they depend on it, see `follow`
     keys: Keys  # the patterns of the places
-    visits: np.ndarray  # (P,) int: intervals begun with a pattern before its parts were filled
 
 
 class Motion(NamedTuple):

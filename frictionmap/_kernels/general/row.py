@@ -21,6 +21,10 @@ _KEPT_WHOLE = 6
 _KEPT_NUMBERS = 1 << 27
 _LEAST_KEPT, _MOST_KEPT = 16, 256
 
+#: Contacts for whose patterns parts of intervals are kept, at most: more have so many patterns that few of
+#: them come back often enough, and filling parts takes as long as some 100 intervals.
+_MOST_WITH_PARTS = 8
+
 #: Patterns that are kept where friction depends on the speed.
 _KEPT_SEGMENTS = 64
 
@@ -40,6 +44,14 @@ def most_intervals(problem, limit):
         if count <= limit:
             most = max(most, count)
     return most
+
+
+@kernel
+def keeps_parts(problem):
+    """Whether parts of intervals are kept, see `glide`; for the same system always or never, so that the bits
+    of a cell do not depend on the cells before it.
+    """
+    return not has_law(problem) and problem.spring.size <= _MOST_WITH_PARTS
 
 
 @entry
@@ -66,7 +78,8 @@ def _kept_patterns(problem, most):
         return 1 << contacts
     size = state_size(problem)
     numbers = (LONG * modes + size + contacts) * padded(size)
-    numbers += WIDTH * contacts * (size + contacts) + most * (WIDTH * contacts + size)
+    if keeps_parts(problem):
+        numbers += WIDTH * contacts * (size + contacts) + most * (WIDTH * contacts + size)
     kept = min(max(_KEPT_NUMBERS // numbers, _LEAST_KEPT), _MOST_KEPT)
     return kept - kept % _LEAST_KEPT
 
@@ -87,9 +100,9 @@ def make_row(problem):
         np.zeros((harmonics, WIDTH)),
         np.empty((2, channels, harmonics)), np.empty((most * channels, WIDTH)), np.zeros(kept, np.int64),
         np.empty((kept, LONG, modes, padded(size))), np.empty((kept, size, padded(size))),
-        np.empty((kept, contacts, padded(size))), _make_parts(problem, 1 if has_law(problem) else kept, most),
+        np.empty((kept, contacts, padded(size))),
+        _make_parts(problem, kept if keeps_parts(problem) else 1, most),
         np.zeros(contacts), make_keys(contacts, key_bits(problem), kept),
-        np.zeros(kept, np.int64),
     )  # fmt: skip
 
 

@@ -273,29 +273,14 @@ def _put_key(problem, row, motion):
 
 
 @kernel
-def find_slot(problem, row, motion):
-    """Place of the present pattern in the tables of the row, which may not be filled yet."""
+def pattern_slot(problem, row, motion):
+    """Place of the present pattern in the tables of the row, filled if it is new there."""
     _put_key(problem, row, motion)
     direct = key_bits(problem) == 1 and motion.sense.size < 32 and 1 << motion.sense.size <= row.patterns.size
     slot, new = find_key(row.keys, direct)
-    if new:
-        row.patterns[slot] = row.visits[slot] = 0
-    return slot
-
-
-@kernel
-def fill_slot(problem, row, motion, slot):
-    """Fill the tables of the present pattern, unless they are."""
-    if row.patterns[slot] == 0:
+    if new or row.patterns[slot] == 0:
         _fill_pattern(problem, row, motion, slot)
         row.patterns[slot] = row.keys.used[row.patterns.size]
-
-
-@kernel
-def pattern_slot(problem, row, motion):
-    """Place of the present pattern in the tables of the row, filled if it is new there."""
-    slot = find_slot(problem, row, motion)
-    fill_slot(problem, row, motion, slot)
     return slot
 
 

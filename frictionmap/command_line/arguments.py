@@ -268,9 +268,7 @@ def _takes_cell(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--r", type=_ratio, action=_Once, help=f"frequency ratio, > 0{with_unit}4.2 Hz'")
     text = f"in the place of --r, without a load: speed of the belt, > 0{with_unit}20 mm/s'"
     sub.add_argument("--wall-speed", metavar="V", dest="wall_speed", type=_ratio, action=_Once, help=text)
-    sub.add_argument(
-        "--beta", type=_ratio, required=True, action=_Once, help=f"friction ratio, >= 0{with_unit}2 N'"
-    )
+    sub.add_argument("--beta", type=_ratio, action=_Once, help=f"friction ratio, >= 0{with_unit}2 N'")
     text = "static over kinetic friction, >= 1 (default: grid.mu of CONFIG if it is a single value)"
     sub.add_argument("--mu", type=float, action=_Once, help=text)
 

@@ -190,6 +190,8 @@ def _response(options: Options, config: "Config", output: "Output") -> None:
     from ..files.summary import describe_locking, describe_response
     from ..steady.response import response
 
+    if options.beta is None:
+        raise InputError("--beta must be given, such as --beta 0.5; got nothing")
     mu = _one_mu(config) if options.mu is None else options.mu
     if config.wall_speed is not None or options.wall_speed is not None:
         _belt_response(options, config, output, mu)
@@ -648,8 +650,13 @@ def _info(options: Options) -> None:
     from ..files.slices import choose, parse_choices
     from ..files.studies import describe_study, is_study
     from ..files.summary import describe_file
+    from ..motions.formats.files import states_everything
 
-    if options.json:
+    if options.file.is_file() and states_everything(options.file):
+        from ..motions.record import Record
+
+        _print(Record.read(options.file).summary())
+    elif options.json:
         with opened(options.file) as ds:
             _print(summary_json(choose(ds, parse_choices(options.at)) if options.at else ds))
     elif not options.at and is_study(options.file):

@@ -24,6 +24,9 @@ _ACCURACY = 1e-9
 #: Numbers below this are written without an exponent.
 _LARGE = 1e6
 
+#: What a response of 0 is written in like: 0 mm.
+_LIKE_ZERO = {"length": 1e-3}
+
 #: The response that is a share, not a length or a force.
 SHARE_LOST = "loss of normal force over the preload"
 
@@ -69,13 +72,15 @@ class Amounts:
     ) -> str:
         """A ratio in the unit that is handy for it, or for another one."""
         size, one = ratio * self._ones[measure], self._ones[measure]
-        unit = handy_unit(abs(one * like if like else size or one), measure)
+        unit = handy_unit(abs(one * like if like else size or _LIKE_ZERO.get(measure, one)), measure)
         return f"{rounded(size / float(UNITS[unit].size), towards, digits)} {unit}"
 
-    def friction(self, beta: float, towards: str = NEAREST, digits: int = _DIGITS) -> str:
-        """A friction force, or its ratio."""
+    def friction(
+        self, beta: float, towards: str = NEAREST, digits: int = _DIGITS, like: float | None = None
+    ) -> str:
+        """A friction force, or its ratio; `like`: another one whose unit is used."""
         if "force" in self._ones:
-            return self._with_unit(beta, "force", towards, digits)
+            return self._with_unit(beta, "force", towards, digits, like)
         return f"beta = {rounded(beta, towards, digits)}"
 
     def friction_range(self, begin: float, end: float) -> str:

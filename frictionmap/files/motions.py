@@ -77,7 +77,8 @@ def describe_motions(ds: xr.Dataset) -> list[str]:
     motions = [ds.isel(dict(zip(dims, cell, strict=True))) for cell in cells[:_MOST_LINES]]
     if len(cells) == 1:
         return [f"{name:<{_WIDTH}} {text}" for name, text in (*rows_of_motion(motions[0]), *_remarks(ds))]
-    lines = [f"{_heading(one, dims[: -len(CELL)]):<{_WIDTH}} {_summary(one)}" for one in motions]
+    most = float(ds["beta"].max())
+    lines = [f"{_heading(one, dims[: -len(CELL)], most):<{_WIDTH}} {_summary(one)}" for one in motions]
     if len(cells) > _MOST_LINES:
         lines.append(f"... and {len(cells) - _MOST_LINES} further motions")
     return [*lines, *(f"{name}: {text}" for name, text in _remarks(ds))]
@@ -86,21 +87,27 @@ def describe_motions(ds: xr.Dataset) -> list[str]:
 def _remarks(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
     """What to look out for, of a dataset that says so."""
     if "interpolation_bound" in ds.attrs:
-        most = _listed(ds.attrs["interpolation_bound"], "m" if "amplitude_m" in ds else "")
+        most = _in_handy_unit(
+            np.array(ds.attrs["interpolation_bound"]), "length" if "amplitude_m" in ds else ""
+        )
         yield "straight lines or a spline change", f"no displacement by more than {most}"
     if "remark" in ds.attrs:
         yield "remark", str(ds.attrs["remark"])
 
 
-def _heading(one: xr.Dataset, further: Sequence[str]) -> str:
-    """The record, its factor, the friction and the place on further axes of one of several motions."""
+def _heading(one: xr.Dataset, further: Sequence[str], most: float) -> str:
+    """The record, its factor, the friction and the place on further axes of one of several motions.
+
+    most : largest friction ratio, whose unit all have
+    """
     words = [str(one["record_name"].values)]
     words += [f"{name} {float(one[name]):.4g}" for name in further]
     for name, unusual in (("scale", 1.0), ("mu", 1.0)):
         if float(one[name]) != unusual:
             words.append(f"{name} {float(one[name]):g}")
     beta = float(one["beta"])
-    friction = amounts_of(one).friction(beta) if SCALES["force"] in one.attrs else f"beta {beta:.4g}"
+    in_units = SCALES["force"] in one.attrs
+    friction = amounts_of(one).friction(beta, like=most) if in_units else f"beta {beta:.4g}"
     return f"{', '.join(words)}, {friction}"
 
 
@@ -116,23 +123,38 @@ def _summary(one: xr.Dataset) -> str:
 def _ranges(ds: xr.Dataset) -> Iterator[str]:
     """Least, median and largest value of every variable, where it is computed."""
     done = ds["status"] != NOT_COMPUTED
+    rows: list[tuple[str, str]] = []
     for name, variable in ds.data_vars.items():
         values = variable.values[np.isfinite(variable.values) & done.transpose(*variable.dims).values]
         if name == "status" or not values.size:
             continue
         unit = str(variable.attrs.get("units", "1")).replace(" s-2", "/s2")
-        text = " ... ".join(f"{q:.4g}" for q in np.quantile(values, [0.0, 0.5, 1.0]))
-        meaning = str(variable.attrs.get("long_name", name))
-        yield f"{meaning:<{_WIDTH + 6}} {text} {'' if unit == '1' else unit}".rstrip()
+        quantiles = np.quantile(values, [0.0, 0.5, 1.0])
+        if unit == "m":
+            text = _in_handy_unit(quantiles, "length", " ... ")
+        else:
+            text = _listed(quantiles, "" if unit == "1" else unit, " ... ")
+        rows.append((str(variable.attrs.get("long_name", name)), text))
+    width = max((len(meaning) for meaning, _ in rows), default=0) + 1
+    yield from (f"{meaning:<{width}} {text}" for meaning, text in rows)
     for code in STATUSES[1:]:
         count = int((ds["status"].values == code.value).sum())
         if count:
             yield f"{count:,} motions {code.name}: {code.meaning}"
 
 
-def _listed(values: Any, unit: str = "") -> str:
-    text = ", ".join(f"{value + 0.0:.4g}" for value in np.atleast_1d(values).ravel().tolist())  # no -0
+def _listed(values: Any, unit: str = "", between: str = ", ") -> str:
+    text = between.join(f"{value + 0.0:.4g}" for value in np.atleast_1d(values).ravel().tolist())  # no -0
     return f"{text} {unit}".rstrip()
+
+
+def _in_handy_unit(values: np.ndarray, measure: str, between: str = ", ") -> str:
+    """Values in SI units in the unit that is handy for the largest one; plain numbers without a measure."""
+    sizes = np.abs(values[np.isfinite(values)])
+    if not measure or not sizes.size:
+        return _listed(values, between=between)
+    unit = handy_unit(float(sizes.max()) or 1.0, measure)
+    return _listed(values / float(UNITS[unit].size), unit, between)
 
 
 def _measured(one: xr.Dataset, name: str, measure: str, unit: str) -> str:
@@ -140,11 +162,10 @@ def _measured(one: xr.Dataset, name: str, measure: str, unit: str) -> str:
     beside = si_name(name, measure)
     if beside not in one:
         return _listed(one[name].values)
-    values = np.abs(one[beside].values)
+    values = one[beside].values
     if measure in ("length", "force", "work") and np.isfinite(values).any():
-        unit = handy_unit(float(values[np.isfinite(values)].max()) or 1.0, measure)
-        return _listed(one[beside].values / float(UNITS[unit].size), unit)
-    return _listed(one[beside].values, unit)
+        return _in_handy_unit(values, measure)
+    return _listed(values, unit)
 
 
 _ROWS = (

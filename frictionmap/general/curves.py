@@ -1,7 +1,7 @@
 """Response curves of general systems, cell by cell."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -215,6 +215,14 @@ def general_curves(
             tables[name][m, i, b] = value
         if progress is not None:
             progress(done, int(np.prod(shape)))
+    if set(tables) == {"status"}:  # no cell is resolved: names and shapes are those of a cell at rest
+        point = float(mu[0]), float(r[0]), float(beta[0])
+        like = _stuck(system, asked, point, 0.0, replace(solver, skip="exact"))
+        tables |= {
+            name: np.full((*shape, *value.shape), LABELS[name].unresolved, dtype=float)
+            for name, value in like.items()
+            if name not in tables
+        }
     for old, new in OLDER_NAMES["curves"].items():
         if new in tables:
             tables[old] = tables[new]

@@ -520,7 +520,7 @@ class System(Shown):
             raise InputError(
                 "load_mass",
                 f"must be {first} for {cause}: the base loads the structure through its springs to "
-                f"the ground; got {self.load_mass}",
+                f"the ground; got {self.load_mass}; omit load_mass",
             )
 
     @property

@@ -3,7 +3,7 @@
 import math
 import os
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -416,6 +416,43 @@ class Record(Shown):
             raise InputError(f"cannot scale a record to peak {peak}: all its samples are 0; give another one")
         return replace(self, scale=math.copysign(size / largest, self.scale))
 
+    def summary(self) -> str:
+        """What the record is, line by line: samples, time step, duration, peak and its time, source.
+
+        Values are those of the samples times `scale`.
+
+        Examples
+        --------
+        >>> import frictionmap as fm
+        >>> print(fm.Record([0.0, 0.3, -0.1], dt=0.01, unit="g", name="shock").summary())
+        shock [record]
+          quantity              base acceleration
+          samples               3
+          time step             0.01 s
+          duration              0.02 s
+          peak                  0.3 g at 0.01 s
+          interpolation         linear
+        """
+        return "\n".join((f"{self.name or 'no name'} [record]", *self._rows()))
+
+    def _rows(self) -> Iterator[str]:
+        times = np.arange(self.values.size) * self.dt if self.time is None else self.time
+        at, steps = float(times[np.argmax(np.abs(self.values))]), np.diff(times)
+        second, unit = ("", "") if self.unit is None else (" s", f" {self.unit}")
+        step = f"{steps[0]:.6g}{second}" if self.dt else f"{steps.min():.6g} to {steps.max():.6g}{second}"
+        for name, text in (
+            ("quantity", self.quantity if self.quantity == "force" else f"base {self.quantity}"),
+            ("samples", f"{self.values.size:,}"),
+            ("time step", step),
+            ("duration", f"{self.duration:.6g}{second}"),
+            ("peak", f"{self._largest * abs(self.scale):.4g}{unit} at {at:.6g}{second}"),
+            ("interpolation", self.interpolation),
+            ("source", self.source),
+            ("note", self.note),
+        ):
+            if text:
+                yield f"  {name:<21} {text}"
+
     def _repr_html_(self) -> str:
         return f"<pre>{self!r}</pre>"
 
@@ -547,6 +584,9 @@ def _times(given: object, count: int) -> np.ndarray:
 
 def checked_records(given: Any, name: str) -> tuple[Record, ...]:
     """One record or several of them, checked; `name` is the argument."""
+    if isinstance(given, (str, os.PathLike)):
+        read = f"fm.Record.read({os.fspath(given)!r})"
+        raise InputError(name, f"must be a Record; got {os.fspath(given)!r}: read it with {read}")
     several = isinstance(given, Sequence)
     listed = tuple(given) if several else (given,)
     if not listed:

@@ -68,8 +68,20 @@ def records_of(table: Mapping[str, Any], folder: Path) -> tuple[tuple[Record, ..
         beside |= _unit_of(table[source], table)
     found, files = _SOURCES[source](table[source], beside, folder)
     if "peak" in table:
+        _check_peak(table, found)
         found = [record.scaled_to(table["peak"]) for record in found]
     return tuple(found), files
+
+
+def _check_peak(table: Mapping[str, Any], found: Sequence[Record]) -> None:
+    """Refuse a peak without a unit where the files, not the table, state the unit."""
+    unit, peak = found[0].unit, table["peak"]
+    of_file = "unit" not in table and ("file" in table or "files" in table)
+    if of_file and unit is not None and not isinstance(peak, str):
+        given = checks.one_line(peak)
+        raise InputError(
+            "peak", f"must have a unit, such as '{given} {unit}', beside a file in {unit}; got {given}"
+        )
 
 
 def _unit_of(source: Any, table: Mapping[str, Any]) -> dict[str, str]:

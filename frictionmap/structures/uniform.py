@@ -33,6 +33,10 @@ def _alone(owner: object, name: str, others: Sequence[str]) -> None:
             raise InputError("cannot use", other, f"with {name}: both define the same; omit one")
 
 
+#: Unit of the places of points: configurations convert to SI units.
+_METRES = " (in m, or as you give lengths)"
+
+
 def _points(given: object, what: str) -> Mapping[str, Any]:
     if not isinstance(given, Mapping) or not given:
         raise InputError(
@@ -180,7 +184,7 @@ class Beam:
             value = checks.number(place, f"points.{name}")
             if not 0.0 <= value <= self.length:
                 raise InputError(
-                    f"points.{name}", f"must be on the beam, 0 to {self.length:g}; got {value:g}"
+                    f"points.{name}", f"must be on the beam, 0 to {self.length:g}{_METRES}; got {value:g}"
                 )
             if value in at_rest:
                 raise InputError(
@@ -374,7 +378,8 @@ class Plate:
             for axis, value, side, pair in zip("xy", given, self.size, (kinds[:2], kinds[2:]), strict=True):
                 if not 0.0 <= value <= side:
                     raise InputError(
-                        f"points.{name}", f"must be on the plate, {axis} from 0 to {side:g}; got {value:g}"
+                        f"points.{name}",
+                        f"must be on the plate, {axis} from 0 to {side:g}{_METRES}; got {value:g}",
                     )
                 for end, kind in zip((0.0, side), pair, strict=True):
                     if value == end and kind != "free":

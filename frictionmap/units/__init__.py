@@ -6,8 +6,8 @@ module      what is in it
 table       known units and their exact sizes
 quantities  numbers with units, from text or from another package, as exact numbers
 scales      `Units`: reference values that convert ratios to Hz and N
-structures  beams, plates and modes of a configuration, in SI units
 axes        conversion of values and ranges with units to ratios
+structures  beams, plates and modes of a configuration, in SI units
 dimensions  keys of [system] that have a dimension, and their conversion to ratios
 ==========  ============================================================================
 """

@@ -7,6 +7,7 @@ from typing import Any
 from .. import checks
 from ..errors import InputError
 from ..structures.uniform import Beam, Plate
+from .axes import has_units
 from .quantities import is_foreign, quantity
 from .scales import MODEL_HAS, OF_MODEL, rounded
 from .table import PI
@@ -97,7 +98,10 @@ def _rates(frequencies: Any, name: str) -> list[Any]:
 
 
 def with_model_units(table: Mapping[str, Any], units: Mapping[str, Any]) -> dict[str, Any]:
-    """Keys of [units]; frequency and stiffness of a structure given by modes are its own, in SI units."""
-    if "modes" not in table or not units or "mass" in units:
+    """Keys of [units]; frequency and stiffness of a structure given by modes are its own, in SI units.
+
+    Without keys it is in SI units if a contact or another number beside the modes has a unit.
+    """
+    if "modes" not in table or "mass" in units or not (units or any(map(has_units, table.values()))):
         return dict(units)
     return {**dict.fromkeys(MODEL_HAS, OF_MODEL), **units}

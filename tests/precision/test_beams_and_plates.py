@@ -273,7 +273,8 @@ def test_a_plate_between_rollers_is_a_beam():
 
 @pytest.mark.parametrize(("kind", "given", "message"), [
     (Beam, {"ends": "clamped-loose"}, "ends must be two of clamped, pinned, free, guided"),
-    (Beam, {"points": {"tip": 1.2}}, "points.tip must be on the beam, 0 to 1; got 1.2"),
+    (Beam, {"points": {"tip": 1.2}},
+     "points.tip must be on the beam, 0 to 1 (in m, or as you give lengths); got 1.2"),
     (Beam, {"points": {"root": 0.0}}, "points.root must move: the clamped-free beam is at rest there; got 0"),
     (Beam, {"modes": 500}, "modes must be <= 198; got 500"),
     (Beam, {"E": 1.0}, "cannot use E with bending_stiffness"),
@@ -282,7 +283,8 @@ def test_a_plate_between_rollers_is_a_beam():
     (Beam, {"end_masses": [0.0, 1e12], "ends": "pinned-free", "end_springs": [0.0, 1.0]},
      "end_masses must leave the first root b"),
     (Plate, {"points": {"p": [0.0, 0.5]}}, "points.p must move: the edge x = 0 is clamped"),
-    (Plate, {"points": {"p": [0.5, 1.5]}}, "points.p must be on the plate, y from 0 to 1; got 1.5"),
+    (Plate, {"points": {"p": [0.5, 1.5]}},
+     "points.p must be on the plate, y from 0 to 1 (in m, or as you give lengths); got 1.5"),
     (Plate, {"edges": ["clamped"]}, "edges must be four of clamped, supported, free"),
 ])  # fmt: skip
 def test_refusals(kind, given, message):

@@ -63,7 +63,7 @@ def test_the_bound_of_the_interpolation_is_printed(capsys):
     assert main(["history", str(MOTIONS / "brace-frame.toml"), *few, "--set", "record.scale=[0.5, 2.0]"]) == 0
     with xr.open_dataset("brace-frame-history.nc") as ds:
         most = ds.attrs["interpolation_bound"]
-    assert f"no displacement by more than {most:.4g} m" in capsys.readouterr().out
+    assert f"no displacement by more than {1e3 * most:.4g} mm" in capsys.readouterr().out
     options = {"frequency": "2.5 Hz", "damping": 0.6, "peak": "0.4 g", "unit": "g", "count": 2}
     quakes = fm.Record.generate("kanai-tajimi", "4 s", "0.01 s", **options)
     frame = fm.System(

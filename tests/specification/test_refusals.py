@@ -281,7 +281,7 @@ map good.toml -o folder.zarr --overwrite
 curves good.toml -o a.zarr
     cannot write a.zarr: only `map` and `spectrum` can write a .zarr store; use another -o
 response good.toml --r 1
-    frictionmap response: the following arguments are required: --beta (see frictionmap response --help)
+    --beta must be given, such as --beta 0.5; got nothing
 response good.toml --r 0 --beta 1
     r must be > 0: at r = 0 there is no motion in time; got 0
 response good.toml --r x --beta 1
@@ -429,7 +429,7 @@ map good.toml --set solver.outputs=regime
 map good.toml --set solver.steps=many
     solver.steps must be a whole number; got 'many'
 response good.toml --r 0.5
-    frictionmap response: the following arguments are required: --beta (see frictionmap response --help)
+    --beta must be given, such as --beta 0.5; got nothing
 response good.toml --r nan --beta 1
     r must be finite; got nan
 response good.toml --r inf --beta 1

@@ -48,8 +48,8 @@ def test_peaks_with_units_are_in_millimetres_over_newtons():
     np.testing.assert_allclose(ax.lines[-1].get_xdata(), [1.0, 2.0], rtol=1e-14)
     np.testing.assert_allclose(ax.lines[-1].get_ydata(), 1e3 * ds.amplitude_m.values.ravel(), rtol=1e-14)
     axes = fm.plot_history(ds.isel(beta=[0]))
-    assert axes[1].get_ylabel() == "displacement [mm]"
-    assert axes[0].get_ylabel() == "load [N]"
+    assert axes[1].get_ylabel() == "displacement\n[mm]"
+    assert axes[0].get_ylabel() == "load\n[N]"
     assert np.abs(axes[0].lines[0].get_ydata()).max() == pytest.approx(10.0, rel=1e-9)
 
 
@@ -61,7 +61,7 @@ def test_the_record_of_a_picture_has_its_unit():
     units = fm.Units(natural_frequency="4 Hz")
     record = fm.Record.pulse("half-sine", "0.3 g", "0.1 s", unit="g")
     ax, *_ = fm.plot_history(fm.history(system, record, beta=["0.1 g"], units=units))
-    assert ax.get_ylabel() == "base\nacceleration [m/s²]"
+    assert ax.get_ylabel() == "base acceleration\n[m/s²]"
     assert ax.lines[0].get_ydata().max() == pytest.approx(0.3 * 9.80665, rel=1e-9)
     ax, *_ = fm.plot_history(fm.history(system, fm.Record([0.0, 1.0, 0.0], dt=1.0), beta=[0.1]))
     assert ax.get_ylabel().startswith("base acceleration\n/ $")

@@ -54,6 +54,12 @@ def read_series(path: Path, given: Given) -> Series:
     return series
 
 
+def states_everything(path: Path) -> bool:
+    """Whether a file is a record by its ending alone, and not a table that may be something else."""
+    ending = path.suffix.lower()
+    return ending in (*peer.QUANTITIES, *knet.ENDINGS, *cosmos.ENDINGS) or _is_stated(path, ending)
+
+
 def _is_stated(path: Path, ending: str) -> bool:
     """Whether a file is in a format that states everything; a table may have the same ending."""
     return ending == ".asc" and is_esm(path)

@@ -103,6 +103,6 @@ def in_rows(panels: list[Panel], below: list[Panel]) -> list[Row]:
     rows: list[Row] = []
     for first in range(0, len(panels), columns):
         for part in filter(None, (panels, below)):
-            row = part[first : first + columns]
-            rows.append([*row, *[None] * (columns - len(row))])
+            if row := part[first : first + columns]:
+                rows.append([*row, *[None] * (columns - len(row))])
     return rows

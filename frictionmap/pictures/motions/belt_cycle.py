@@ -16,12 +16,16 @@ from ..options import FigureOptions
 from ..palette import CLASSES, LINES, STUCK, in_turn
 from ..panels import Handle, new_figure
 from ..shapes import check_holds, to_draw
+from ..sizes import figure_size
 from .in_time import end_picture
 from .loops import draw_arrow
 from .traces import contact_colours, is_at_rest
 
 if TYPE_CHECKING:
     from ..panels import AxesArray
+
+#: Width below which the unit has a line of its own below the narrow panel [inch].
+_NARROW = 4.5
 
 #: Size of the picture [inch].
 _WIDTH, _HEIGHT = 9.0, 5.4
@@ -104,7 +108,8 @@ def _draw_plane(ax: Axes, ds: xr.Dataset) -> None:
         if not is_at_rest(x):
             draw_arrow(ax, place * x, speed * v, int(np.argmin(v)), colour)
     ax.axhline(speed * float(ds["wall_speed"]), color="black", linewidth=0.8, linestyle=(0, (4, 2)))
-    ax.set_xlabel(f"displacement{length}")
+    gap = "\n" if length and figure_size(_WIDTH, _HEIGHT)[0] < _NARROW else " "
+    ax.set_xlabel(f"displacement{gap}{length.strip()}".strip())
     ax.set_ylabel(f"velocity{unit}")
 
 

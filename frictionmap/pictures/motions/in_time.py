@@ -100,6 +100,15 @@ def words_of(values: xr.DataArray) -> str:
     return str(values.attrs.get("long_name", values.name)) + (f" [{unit}]" if unit else "")
 
 
+def peaks_in_words(ds: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
+    """Peaks of a spectrum, lengths in the unit that is handy for the largest one; the name of their axis."""
+    peaks = ds[name]
+    if peaks.attrs.get("units") != "m":
+        return peaks, words_of(peaks)
+    values, unit = in_handy_unit(peaks.values, "length")
+    return peaks.copy(data=values), f"{peaks.attrs.get('long_name', name)}{unit}"
+
+
 def _by_rows(values: np.ndarray) -> np.ndarray:
     return values.reshape(-1, values.shape[-1])
 
@@ -153,11 +162,11 @@ def _record_with_label(ds: xr.Dataset) -> tuple[np.ndarray, str]:
         values, unit = (
             in_handy_unit(values * ones["force"], "force") if "force" in ones else (values, " / $P$")
         )
-        return values, f"load{unit}"
+        return values, f"load\n{unit.strip()}"
     if what != DRIVES["base"]:
         return values, "record"
     if "acceleration" in ones:
-        return values * ones["acceleration"], "base\nacceleration [m/s²]"
+        return values * ones["acceleration"], "base acceleration\n[m/s²]"
     return values, "base acceleration\n" + r"/ $(\omega_1^2 P/k_1)$"
 
 
@@ -169,12 +178,12 @@ def _draw_traces(axes: "AxesArray", ds: xr.Dataset) -> list[Handle]:
     x, length = in_handy_unit(x, "length") if length else (x, " / $(P/k_1)$")
     names = names_of_masses(ds)
     handles = _draw_rows(axes[1], time, x, in_turn(LINES, len(names)), names)
-    axes[1].set_ylabel(f"displacement{length}")
+    axes[1].set_ylabel(f"displacement\n{length.strip()}")
     force, newton = values_in_si(ds, "friction", "N", "N")
     force, newton = in_handy_unit(force, "force") if newton else (force, " / $P$")
     contacts = [f"contact {k}" for k in range(1, len(_by_rows(force)) + 1)]
     handles += _draw_rows(axes[2], time, force, contact_colours(len(contacts)), contacts)
-    axes[2].set_ylabel(f"contact force{newton}")
+    axes[2].set_ylabel(f"contact force\n{newton.strip()}")
     axes[2].set_xlabel(time_words(ds))
     for ax in axes[1:]:
         ax.margins(x=0.0)
@@ -283,7 +292,7 @@ def plot_history(
     >>> ds = fm.history(fm.System(), pulse, beta=[0.2])
     >>> axes = fm.plot_history(ds)
     >>> [ax.get_ylabel() for ax in axes.flat]
-    ['load / $P$', 'displacement / $(P/k_1)$', 'contact force / $P$']
+    ['load\\n/ $P$', 'displacement\\n/ $(P/k_1)$', 'contact force\\n/ $P$']
     """
     ds = of_one_system(to_draw(ds, "plot_history", "history"))
     single = _is_single(ds) and "time" in ds.dims
@@ -386,7 +395,8 @@ def plot_spectrum(
     beta = ds["beta"].values
     chosen = np.unique(np.linspace(0, beta.size - 1, min(beta.size, _MOST_LINES)).round().astype(int))
     axes = one_panel(ax)
-    values = ds[name].isel(scale=0, mu=0).transpose("record", "period", "beta").values
+    peaks, words = peaks_in_words(ds, name)
+    values = peaks.isel(scale=0, mu=0).transpose("record", "period", "beta").values
     period = ds["period"].values
     handles: list[Handle] = []
     for b, colour in zip(chosen, sequence(len(chosen)), strict=True):
@@ -396,7 +406,7 @@ def plot_spectrum(
     if period.size > 1 and period[0] > 0.0 and period[-1] / period[0] > 20.0 and np.isfinite(period[-1]):
         axes[0].set_xscale("log")
     axes[0].set_xlabel("natural period" + (" [s]" if ds["period"].attrs.get("units") == "s" else ""))
-    axes[0].set_ylabel(words_of(ds[name]))
+    axes[0].set_ylabel(words)
     axes[0].set_ylim(bottom=0.0)
     if ax is None:
         end_picture(ds, axes, handles, caption_of(len(values)))

@@ -25,11 +25,11 @@ from .in_time import (
     of_one_system,
     one_motion,
     one_panel,
+    peaks_in_words,
     refuse_several,
     time_words,
     unit_of,
     values_in_si,
-    words_of,
 )
 
 if TYPE_CHECKING:
@@ -84,6 +84,8 @@ def plot_incremental(
     if positive.size < 2:
         raise InputError(f"ds must have at least 2 values of beta above 0; got {positive.size}")
     chosen = float(positive[positive.size // 2]) if friction is None else friction
+    values, words = peaks_in_words(ds, name)
+    ds = ds.assign({name: values})
     peaks = over_scale(ds, chosen, name).isel(mu=0).transpose("record", "period", "scale")
     axes = one_panel(ax)
     periods = ds["period"].values
@@ -95,7 +97,7 @@ def plot_incremental(
         label = f"period {periods[p]:.3g}{unit_of(ds['period'])}"
         handles.append(Line2D([], [], color=colour, label=label))
     axes[0].set_xlabel(f"factor of the records, friction {chosen:.3g}{unit_of(ds['beta'])}")
-    axes[0].set_ylabel(words_of(ds[name]))
+    axes[0].set_ylabel(words)
     axes[0].set_xlim(0.0, float(peaks["scale"].max()))
     axes[0].set_ylim(bottom=0.0)
     if ax is None:

@@ -80,7 +80,7 @@ class Record(Shown):
     --------
     >>> import frictionmap as fm
     >>> fm.Record([0.0, 0.3, 0.0], dt=0.1, unit="g")
-    <Record: acceleration, 3 samples over 0.2, peak 0.3 g>
+    <Record: acceleration, 3 samples over 0.2 s, peak 0.3 g>
     """
 
     values: Any
@@ -458,11 +458,12 @@ class Record(Shown):
 
     def __repr__(self) -> str:
         unit = f" {self.unit}" if self.unit else ""
+        second = " s" if self.unit else ""
         peak = self._largest * abs(self.scale)
         return (
             (
-                f"<Record {self.name or ''}: {self.quantity}, {self.values.size} samples over "
-                f"{self.duration:.6g}, peak {peak:.4g}{unit}>"
+                f"<Record {self.name or ''}: {self.quantity}, {self.values.size:,} samples over "
+                f"{self.duration:.6g}{second}, peak {peak:.4g}{unit}>"
             )
             .replace("  ", " ")
             .replace(" :", ":")

@@ -86,8 +86,17 @@ def _friction(given: Any, records: tuple[Record, ...]) -> np.ndarray:
     return checks.axis(given if values is None else [float(one) for one in values], "friction", least=0.0)
 
 
-def _periods(given: Any) -> np.ndarray:
-    """Periods > 0; infinite without a spring."""
+def _periods(given: Any, records: tuple[Record, ...]) -> np.ndarray:
+    """Periods > 0, in seconds or those of records without a unit; infinite without a spring."""
+    seconds = quantities(given, "period", "time")
+    if seconds is not None:
+        if records[0].unit is None:
+            raise InputError(
+                "period",
+                "must be numbers without a unit, because the records have none; got "
+                f"{checks.one_line(given)}",
+            )
+        given = [float(one) for one in seconds]
     values = np.atleast_1d(checks.array(given, "period"))
     if values.dtype.kind in "iuf" and values.ndim == 1 and values.size and np.isposinf(values[-1]):
         finite = checks.axis(values[:-1], "period", least=-np.inf) if values.size > 1 else np.empty(0)
@@ -120,7 +129,7 @@ def checked_spectra(
     listed = _records(records)
     grid = Grid(
         listed, checks.axis(scale, "scale", least=-np.inf), checks.axis(mu, "mu", least=1.0),
-        _periods(period), _friction(friction, listed), checks.number(damping, "damping", least=0.0),
+        _periods(period, listed), _friction(friction, listed), checks.number(damping, "damping", least=0.0),
     )  # fmt: skip
     if contact_stiffness is None:
         return Asked(grid, None)

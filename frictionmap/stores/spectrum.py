@@ -44,8 +44,8 @@ def spectrum(
     records : Record or sequence of Record
         Motions of the base, or forces over the mass.
     period : array_like
-        Natural periods, > 0, increasing, in the unit of time of the records; ``inf`` is a block without a
-        spring.
+        Natural periods, > 0, increasing, in the unit of time of the records, or with a unit ("0.5 s");
+        ``inf`` is a block without a spring.
     friction : array_like
         Kinetic friction forces over the mass, >= 0, increasing; with a unit, such as ``"0.05 g"``, if the
         records have one.

@@ -54,7 +54,8 @@ def test_no_motion_is_zero_millimetres():
 
 def test_lengths_of_spectra_are_in_millimetres():
     pulse = fm.Record.pulse("half-sine", "0.4 g", "0.2 s", unit="g")
-    ds = fm.spectrum(pulse, period=[0.5, 1.0], friction=["0.02 g", "0.1 g"], damping=0.05)
+    ds = fm.spectrum(pulse, period=["0.5 s", "1 s"], friction=["0.02 g", "0.1 g"], damping=0.05)
+    np.testing.assert_array_equal(ds.period, [0.5, 1.0])
     peaks = np.quantile(1e3 * ds.amplitude.values, [0.0, 0.5, 1.0])
     text = " ... ".join(f"{peak:.4g}" for peak in peaks)
     assert re.search(rf"largest displacement +{re.escape(text)} mm", describe_file(ds))
@@ -64,6 +65,23 @@ def test_lengths_of_spectra_are_in_millimetres():
     np.testing.assert_allclose(drawn, 1e3 * ds.amplitude.values[0, 0, 0].T.reshape(2, 2), rtol=1e-14)
     (ax,) = fm.plot_incremental(ds)
     assert ax.get_ylabel() == "largest displacement [mm]"
+
+
+def test_periods_with_a_unit_need_records_with_one():
+    pulse = fm.Record.pulse("half-sine", 1.0, 2.0)
+    with pytest.raises(fm.InputError, match="period must be numbers without a unit, because the records"):
+        fm.spectrum(pulse, period=["0.5 s"], friction=[0.1])
+
+
+def test_energies_are_in_the_unit_of_their_sum():
+    """Each energy is below 10 kJ, from which on kilojoules are handy, and their sum is above."""
+    pulse = fm.Record.pulse("half-sine", "240 kN", "0.1 s", quantity="force", unit="N")
+    ds = fm.history(fm.System(damping_ratios=0.3), pulse, beta=["64 kN"], units=UNITS)
+    parts = [ds[name].squeeze(drop=True) for name in ("lost_friction_J", "lost_damping_J", "stored_energy_J")]
+    assert max(float(part.max()) for part in parts) < 1e4
+    (ax,) = fm.plot_energies(ds)
+    assert ax.get_ylabel() == "energy [kJ]"
+    assert ax.lines[0].get_ydata().max() == pytest.approx(1e-3 * float(sum(parts).max()), rel=1e-12)
 
 
 def test_a_beam_without_units_needs_only_a_load(tmp_path, monkeypatch, capsys):

@@ -190,7 +190,8 @@ def _stack(ax: Axes, at: np.ndarray, layers: list[np.ndarray], joule: str) -> No
     """Draw layers above each other, and their sum; joules in the unit that is handy for them."""
     drawn = np.array(layers)
     if joule:
-        drawn, joule = in_handy_unit(drawn, "work")
+        whole, joule = in_handy_unit(np.vstack([drawn, drawn.sum(axis=0)]), "work")
+        drawn = whole[:-1]
     ax.stackplot(at, drawn, colors=LINES[:3], alpha=0.55, linewidth=0.0)
     ax.plot(at, drawn.sum(axis=0), color="black", linewidth=1.2)
     ax.set_ylabel(f"energy{joule}")

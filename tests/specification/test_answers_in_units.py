@@ -104,7 +104,7 @@ def test_a_beam_without_units_needs_only_a_load(tmp_path, monkeypatch, capsys):
     )
 
 
-def test_a_path_in_the_place_of_a_record_is_told_how_to_read_it():
+def test_a_path_in_the_place_of_a_record_is_refused_with_how_to_read_it():
     with pytest.raises(fm.InputError, match=re.escape("record must be a Record; got 'a.AT2': read it with")):
         fm.history(fm.System(), "a.AT2", beta=[0.1])
 

@@ -11,13 +11,16 @@ from ..jobs import Watch
 from ..model.settings import Start
 from ..model.system import System
 from .closed_limits import has_closed_limits
-from .held import belt_limit, least_static_friction, stick_scales
+from .held import belt_limit, direct_displacements, least_static_friction, stick_scales
 from .loops import loop_stick_scales, refuse_further_loops
 from .no_stop import find_intervals, no_intervals, put_closed_limits
 from .problem import ModalSystem, general_of, is_symmetric
 
 #: Intervals without stops that are looked for in maps.
 INTERVALS = 4
+
+#: Displacements in contacts by modes that depend on those in others: singular values below, over the largest.
+_DEPENDENT = 1e-12
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,9 @@ def friction_lines(system: System, mu: np.ndarray) -> tuple[np.ndarray, np.ndarr
 def rest_states(system: System, modal: ModalSystem, r: np.ndarray) -> np.ndarray:
     """Modes and velocities at rest at tau = 0, (n_r, 2, m); masses at a joined wall have its displacement."""
     general = general_of(system)
-    phi, mass = modal.phi, modal.mass
+    phi, mass, points = modal.phi, modal.mass, general.shaken_points
+    if points is not None:
+        return _points_at_rest(system, modal, r)
     x = np.zeros(len(mass))
     u = sum(value.real for value in general.base.values())
     moved = {group.vector.tobytes(): group.vector for group in general.groups if group.base}
@@ -58,6 +63,25 @@ def rest_states(system: System, modal: ModalSystem, r: np.ndarray) -> np.ndarray
         x += u * vector / (vector @ vector)
     state = np.zeros((r.size, 2, phi.shape[1]))
     state[:, 0] = phi.T @ mass @ x
+    alone = moving_alone(system, modal)
+    state[:, 1, alone] = load_velocities(system, modal, r, np.zeros(r.size))[:, alone]
+    return state
+
+
+def _points_at_rest(system: System, modal: ModalSystem, r: np.ndarray) -> np.ndarray:
+    """The states of `rest_states` of modes relative to the base: contacts are where masses have them."""
+    general = general_of(system)
+    assert general.points is not None
+    vectors, iota = general.points.vectors, modal.phi.T @ general.moved(modal.mass)
+    own = np.array([float(group.base) for group in general.groups])
+    u, rate = sum(general.base.values()), sum(1j * n * one for n, one in general.base.items())
+    moved = {row.tobytes(): row for row, base in zip(vectors, own, strict=True) if base}
+    x = sum((row / (row @ row) for row in moved.values()), np.zeros(vectors.shape[1]))
+    state = np.zeros((r.size, 2, iota.size))
+    state[:, 0], state[:, 1] = -u.real * iota, -rate.real * iota
+    direct = sum(direct_displacements(general, order, r) for order in general.base)
+    missing = u.real * (vectors @ x) - direct.real - state[:, 0] @ modal.chi.T
+    state[:, 0] += missing @ np.linalg.pinv(modal.chi, rcond=_DEPENDENT).T
     alone = moving_alone(system, modal)
     state[:, 1, alone] = load_velocities(system, modal, r, np.zeros(r.size))[:, alone]
     return state
@@ -83,8 +107,14 @@ def moving_alone(system: System, modal: ModalSystem) -> np.ndarray:
 def load_velocities(system: System, modal: ModalSystem, r: np.ndarray, tau: np.ndarray) -> np.ndarray:
     """Velocities q' at phases tau (n_r,) of modes on which only the load acts, with the mean 0; (n_r, m)."""
     found = np.zeros((r.size, modal.squares.size))
-    for order, load in general_of(system).forces.items():
-        place = -(modal.phi.T @ load) / np.where(r > 0.0, order * r, 1.0)[:, np.newaxis] ** 2
+    general = general_of(system)
+    places = {
+        order: -(modal.phi.T @ load) / np.where(r > 0.0, order * r, 1.0)[:, np.newaxis] ** 2
+        for order, load in general.forces.items()
+    }
+    if general.shaken_points is not None:
+        places = {order: -u * (modal.phi.T @ general.moved(modal.mass)) for order, u in general.base.items()}
+    for order, place in places.items():
         found += (1j * order * place * np.exp(1j * order * tau)[:, np.newaxis]).real
     return found
 

@@ -22,6 +22,8 @@ class ClosedLimits(NamedTuple):
 def has_closed_limits(system: System) -> bool:
     """Whether a system is one rigid contact under one harmonic load, with friction in proportion to beta."""
     general = general_of(system)
+    if general.shaken_points is not None:  # the modes are relative to the base, and the formulas are not
+        return False
     if general.free or general.count > 1 or general.elastic.any() or len(general.orders) > 1:
         return False
     contact = general.groups[0]

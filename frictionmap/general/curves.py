@@ -95,12 +95,16 @@ def _held(system: System, r: float, lowest: np.ndarray, highest: int) -> _Held:
     whole = max(highest, *motions)
     x, z, f = (np.zeros((rows, whole + 1), dtype=complex) for rows in (n, count, count))
     damping, moved = 0.0, np.array([float(group.base) for group in general.groups])
+    of_points = general.shaken_points is not None
     for order, motion in motions.items():
         u = general.base.get(order, 0.0)
-        x[:, order], f[:, order] = general.displacements(order, motion, forces[order])[0], forces[order][0]
+        x[:, order] = general.displacements(order, at, motion, forces[order])[0]
+        f[:, order] = forces[order][0]
         vectors = general.vectors if general.points is None else general.points.vectors
         z[:, order] = np.where(general.elastic, vectors @ x[:, order] - u * moved, 0.0)
-        rate = order * (motion[0] - (u if system.damping_reference == "base" else 0.0))
+        if of_points != (system.damping_reference == "base"):  # modes at points are relative to the base
+            motion = motion + u * (general.moved(system.modes.mass) if of_points else -1.0)
+        rate = order * motion[0]
         damping += np.pi * r * float((rate.conj() @ system.modes.damping @ rate).real)
     x[np.abs(x) <= _ROUNDING * np.abs(x).max()] = 0.0  # masses that contacts hold
     if not system.rigid_modes:  # which come to any place

@@ -39,8 +39,14 @@ def _lag(phasors: np.ndarray) -> np.ndarray:
 
 def _contact_harmonics(system: System, steps: Steps, x: np.ndarray, highest: int) -> np.ndarray:
     """Harmonics of the displacements in the contacts, complex (N, highest + 1)."""
-    points = general_of(system).points
-    return steps.harmonics("z", highest) if points is None else points.vectors @ x
+    general = general_of(system)
+    if general.points is None:
+        return steps.harmonics("z", highest)
+    found = general.points.vectors @ x
+    for order, u in general.base.items():
+        if order <= highest:
+            found[:, order] -= u * np.array([float(group.base) for group in general.groups])
+    return found
 
 
 def harmonic_values(system: System, steps: Steps, highest: int) -> dict[str, np.ndarray]:
@@ -68,9 +74,13 @@ def _damping_work(system: System, steps: Steps) -> float:
     x = 0.5 * (1.0 + nodes) * (steps.lengths[:, np.newaxis] / steps.h)
     series = steps.series[:, steps.rows("q")]
     velocity = steps.values(series[:, :, np.newaxis, :], x[:, np.newaxis, :], 1)
-    damping = steps.problem.damping
-    if system.damping_reference == "base":
-        velocity = steps.modal.phi @ velocity - _base_velocity(system, steps, x)[:, np.newaxis, :]
+    damping, general = steps.problem.damping, general_of(system)
+    of_points = general.shaken_points is not None
+    if of_points != (system.damping_reference == "base"):  # modes at points are relative to the base
+        carried = general.moved(steps.modal.mass) if of_points else -np.ones(len(steps.modal.phi))
+        velocity = steps.modal.phi @ velocity + np.multiply.outer(
+            _base_velocity(system, steps, x), carried
+        ).swapaxes(1, 2)
         damping = steps.modal.viscous
     power = np.einsum("sig,ij,sjg->sg", velocity, damping, velocity)
     whole = np.sum(power * 0.5 * weights * steps.lengths[:, np.newaxis])

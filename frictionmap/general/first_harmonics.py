@@ -11,7 +11,7 @@ from .._kernels.general.steady import REPEATS
 from ..model.settings import Solver
 from ..model.system import System
 from .boundaries import friction_lines, rest_states
-from .held import held_displacements, least_static_friction, stick_scales
+from .held import held_displacements, least_static_friction, linear_parts, solve_each, stick_scales
 from .observed import has_residual
 from .problem import general_of, problem_of
 from .recorded import Memory, recorded_state
@@ -40,7 +40,10 @@ def steady_phasors(system: System, r: np.ndarray, beta: np.ndarray) -> tuple[np.
     regime = np.full(r.size, regimes.UNRESOLVED, np.int8)
     free = beta == 0.0
     general = general_of(system)
-    without = general.displacements(1, system.modes.mass_responses(at), np.zeros((at.size, general.count)))
+    alone = system.modes.mass_responses(at) if general.shaken_points is None else solve_each(
+        *linear_parts(system, system.modes.stiffness, 1, at)
+    )  # fmt: skip
+    without = general.displacements(1, at, alone, np.zeros((at.size, general.count)))
     phasors[free] = without[index[free]]
     regime[free] = regimes.CONTINUOUS
     one = np.ones(1)
@@ -79,13 +82,13 @@ def _follow(
         fill_phasors(record.steps, record.patterns, steps, h, parts)
         q = modal.phi @ (parts[0] + 1j * parts[1])
         forces = _forces(system, float(at[index[k]]), q) if has_residual(system) else np.zeros(general.count)
-        found[0][k] = general.displacements(1, q[np.newaxis], forces[np.newaxis])[0]
+        r = at[index[k] : index[k] + 1]
+        found[0][k] = general.displacements(1, r, q[np.newaxis], forces[np.newaxis])[0]
         moves = counts[MOVED].any()
         found[1][k] = regimes.STICK_SLIP if moves else regimes.PERMANENT_STICKING
 
 
 def _forces(system: System, r: float, q: np.ndarray) -> np.ndarray:
     """First harmonics of the forces in contacts, (N,), that a motion q (n,) in balance with its load has."""
-    general, modes = general_of(system), system.modes
-    inner = (modes.stiffness - r * r * modes.mass + 1j * r * modes.damping) @ q
-    return np.asarray(np.linalg.lstsq(general.vectors.T, general.forces[1] - inner)[0])
+    matrix, load = linear_parts(system, system.modes.stiffness, 1, np.array([r]))
+    return np.asarray(np.linalg.lstsq(general_of(system).vectors.T, load[0] - matrix[0] @ q)[0])

@@ -46,10 +46,13 @@ def linear_parts(
     matrix = stiffness - square[:, np.newaxis] ** 2 * modes.mass + 1j * square[:, np.newaxis] * modes.damping
     load = np.zeros((r.size, len(stiffness)), dtype=complex)
     load += general.forces.get(order, 0.0)
-    u = general.base.get(order, 0.0)
-    load += u * modes.stiffness.sum(axis=1)
-    if system.damping_reference == "base":
-        load += 1j * square * u * modes.damping.sum(axis=1)
+    u, of_points = general.base.get(order, 0.0), general.shaken_points is not None
+    if of_points:
+        load += square**2 * u * general.moved(modes.mass)
+    else:
+        load += u * modes.stiffness.sum(axis=1)
+    if of_points != (system.damping_reference == "base"):
+        load += 1j * square * (-u if of_points else u) * general.moved(modes.damping)
     return matrix, load
 
 
@@ -112,31 +115,32 @@ def held_forces_of(
         matrix[:, :n, n:], matrix[:, n:, :n] = w, w.T
         u = general.base.get(order, 0.0)
         right[:, :n] += u * pull @ moved
-        right[:, n:] = u * moved[~elastic]
-        direct = _direct(general, order)[which]
-        right[:, :n] -= pull @ direct
+        direct = direct_displacements(general, order, r)[..., which]
+        right[:, n:] = u * moved[~elastic] - direct[..., ~elastic]
+        right[:, :n] -= (pull @ direct.T).T
         found = solve_each(matrix, right)
         x = found[:, :n]
         force = np.empty((r.size, which.size), dtype=complex)
         force[:, ~elastic] = found[:, n:]
         with np.errstate(invalid="ignore"):  # an infinite x
-            place = x @ vectors[elastic].T - u * moved[elastic] + direct[elastic]
+            place = x @ vectors[elastic].T - u * moved[elastic] + direct[..., elastic]
             force[:, elastic] = place @ kt if flexibility.size else kt[elastic] * place
         forces[order], motions[order] = force, x
     return forces, motions
 
 
-def _direct(general: ContactSystem, order: int) -> np.ndarray:
-    """Displacements in the contacts by a harmonic of the load that modes leave out, (N,)."""
-    points = general.points
-    return np.zeros(general.count) if points is None else points.vectors @ points.pushed(order)
+def direct_displacements(general: ContactSystem, order: int, r: np.ndarray) -> np.ndarray:
+    """Displacements in the contacts by load and base at an order beside those of modes, (N,) or (n_r, N)."""
+    if general.points is None:
+        return np.zeros(general.count)
+    return np.asarray((general.points.vectors @ general.direct_motion(order, r).T).T)
 
 
 def held_displacements(system: System, r: np.ndarray) -> dict[int, np.ndarray]:
     """Displacements (n_r, n) of masses, or points, with all contacts held, by order; inf at a resonance."""
     general = general_of(system)
     forces, motions = possible_forces(system, r)
-    return {n: general.displacements(n, motion, forces[n]) for n, motion in motions.items()}
+    return {n: general.displacements(n, r, motion, forces[n]) for n, motion in motions.items()}
 
 
 def held_ranges(system: System, r: np.ndarray, further: bool = False) -> tuple[np.ndarray, np.ndarray]:
@@ -172,7 +176,7 @@ def sliding_phasors(system: System, r: np.ndarray) -> np.ndarray:
         x = solve_each(*linear_parts(system, system.modes.stiffness, order, r))
         with np.errstate(invalid="ignore"):  # an infinite x
             z = x @ general.vectors.T - general.base.get(order, 0.0) * moved
-            found.append(z + _direct(general, order) if general.points is not None else z)
+            found.append(z if general.points is None else z + direct_displacements(general, order, r))
     return np.stack(found, axis=-1)
 
 

@@ -14,7 +14,7 @@ from .boundaries import friction_lines, stays_at_rest
 from .certificate import certified_beta
 from .cyclic import keep_sectors, kept_rows, spread
 from .held import held_ranges
-from .observed import has_residual, observed_rows, of_contacts_last
+from .observed import has_direct, observed_rows, of_contacts_last
 from .outputs import allocate
 from .problem import general_of, problem_of, static_offset
 from .starts import initial_states
@@ -78,7 +78,7 @@ def solve_cells(
     starts = initial_states(system, problem, modal, solver.start)
     # the place of a free structure is arbitrary; that of contacts that close a loop is not looked for
     settled = NO_PLACES if general.free or general.loop else places
-    observed, alike = masses or further or has_residual(system), None
+    observed, alike = masses or further or has_direct(system), None
     outputs = observed_rows(system, modal, further)
     if unique.all() and "multiplier" not in solver.outputs:  # some deviations are not alike in all sectors
         alike = keep_sectors(system, problem, starts)

@@ -38,8 +38,9 @@ def no_intervals(shape: tuple[int, int, int]) -> Intervals:
 
 def wall_size(system: System, modal: ModalSystem) -> float:
     """Largest coordinate of a mode where all masses move with the walls: friction can take them along."""
-    moved = modal.phi.T @ modal.mass.sum(axis=1)
-    return float(np.abs(moved).max()) * sum(abs(u) for u in general_of(system).base.values())
+    general = general_of(system)
+    moved = modal.phi.T @ general.moved(modal.mass)
+    return float(np.abs(moved).max()) * sum(abs(u) for u in general.base.values())
 
 
 def linear_states(problem: Problem, r: np.ndarray, wall: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

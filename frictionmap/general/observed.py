@@ -54,8 +54,8 @@ def observed_rows(system: System, modal: ModalSystem, further: bool) -> np.ndarr
     """
     phi = modal.phi if modal.points is None else modal.points.shapes
     n, m = phi.shape
-    if has_residual(system):
-        return _rows_with_forces(system, modal)
+    if has_direct(system):
+        return _rows_with_forces(system, modal, further)
     if not further:
         return np.ascontiguousarray(phi)
     channels = channels_of(system, modal)
@@ -73,29 +73,45 @@ def observed_rows(system: System, modal: ModalSystem, further: bool) -> np.ndarr
 
 
 def has_residual(system: System) -> bool:
-    """Whether displacements contain those of modes that are left out, see `_rows_with_forces`."""
+    """Whether displacements contain those of modes that are left out."""
     points = general_of(system).points
     return points is not None and points.residual is not None
 
 
-def _rows_with_forces(system: System, modal: ModalSystem) -> np.ndarray:
-    """Displacements of the points and, after them, in the contacts: (p + N, m + D + N + 1).
+def has_direct(system: System) -> bool:
+    """Whether displacements contain more than those of modes, see `_rows_with_forces`."""
+    return has_residual(system) or general_of(system).shaken_points is not None
 
-    Columns are shares of modes, channels and friction forces, and zeros: no row is a force, see `Record`.
+
+def _rows_with_forces(system: System, modal: ModalSystem, further: bool) -> np.ndarray:
+    """Displacements of the points and, after all, in the contacts: (p + N, m + D + N + 1), or more rows.
+
+    Columns are shares of modes, channels and friction forces, and whether a row is a force, see `Record`.
+    Further rows of drifts and of the force on the base are zeros; accelerations are those without a residual.
     """
-    points, rows = general_of(system).points, modal.points
-    assert points is not None
+    general, rows = general_of(system), modal.points
+    assert general.points is not None
     assert rows is not None
-    whole = np.hstack((rows.shapes, rows.loads, rows.forces, np.zeros((system.n, 1))))
-    return np.ascontiguousarray(np.vstack((whole, points.vectors @ whole)))
+    n, (_, m) = system.n, rows.shapes.shape
+    whole = np.hstack((rows.shapes, rows.loads, rows.forces, np.zeros((n, 1))))
+    contacts = general.points.vectors @ whole
+    if general.base:  # the first channel is its place, and the second one its acceleration
+        contacts[:, m] -= np.array([float(group.base) for group in general.groups])
+    if not further:
+        return np.ascontiguousarray(np.vstack((whole, contacts)))
+    acceleration = np.zeros_like(whole)
+    acceleration[:, :m], acceleration[:, -1] = rows.shapes, 1.0
+    acceleration[:, m + 1] = general.points.carried
+    none = np.zeros_like(whole)
+    return np.ascontiguousarray(np.vstack((whole, none, acceleration, none[:1], contacts)))
 
 
 def of_contacts_last(system: System, cells: Cells) -> Cells:
     """Put the displacements in the contacts that are recorded after those of the points in their place.
 
-    With a residual flexibility, the kernels know those of its other end.
+    With a residual flexibility, the kernels know those of its other end; on a moving base, relative ones.
     """
-    if not has_residual(system):
+    if not has_direct(system):
         return cells
     count = general_of(system).count
 
@@ -112,7 +128,7 @@ def observed_phasors(system: System, order: int, r: np.ndarray, x: np.ndarray) -
     drift = np.diff(x, axis=1, prepend=zero + general.base.get(order, 0.0))
     acceleration = -((order * r[:, np.newaxis]) ** 2) * x
     if general.points is not None:
-        return np.hstack((drift, acceleration, np.full((r.size, 1), np.nan)))
+        return np.hstack((drift, acceleration, zero))  # the force on the base is not known, and not given
     base = (acceleration @ system.modes.mass.sum(axis=0))[:, np.newaxis]
     if not general.base:
         base = base - np.sum(general.forces.get(order, 0.0))

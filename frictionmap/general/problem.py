@@ -28,7 +28,7 @@ class Channel(NamedTuple):
     push: np.ndarray  # (n,) load on the masses
     base: np.ndarray  # (N,) displacement of the walls
     normal: np.ndarray  # (N,) variation of the normal loads
-    rate: bool = False  # whether r times the derivative of these phasors drives
+    rate: int = 0  # how many times r times the derivative is taken of these phasors: that drives
     place: np.ndarray | None = None  # (p,) displacement of points beside that by modes
 
 
@@ -108,6 +108,25 @@ def _channels_of_points(points: Points) -> list[Channel]:
     return found
 
 
+def _channels_of_base(system: System, modal: ModalSystem) -> list[Channel]:
+    """The motion of the base.  Modes at points are relative to it, and see its acceleration and dashpots."""
+    general = general_of(system)
+    base, points, still = dict(general.base), general.shaken_points, np.zeros(general.count)
+    relative, viscous = system.damping_reference == "base", general.moved(modal.viscous)
+    if points is None:
+        moved = np.array([float(group.base) for group in general.groups])
+        found = [Channel(base, general.moved(modal.stiffness), moved, still)]
+    else:
+        inertia = general.moved(modal.mass)
+        found = [
+            Channel(base, 0.0 * inertia, general.wall_shares, still, place=points.carried),
+            Channel(base, -inertia, points.vectors @ points.sag, still, rate=2, place=-points.sag),
+        ]
+    if relative == (points is None) and modal.viscous.any():
+        found.append(Channel(base, viscous if relative else -viscous, still, still, rate=1))
+    return found
+
+
 def channels_of(system: System, modal: ModalSystem) -> list[Channel]:
     """The functions of time that drive a system."""
     general = general_of(system)
@@ -119,11 +138,7 @@ def channels_of(system: System, modal: ModalSystem) -> list[Channel]:
         if phasors:
             found.append(Channel(phasors, np.eye(n)[row], still, still))
     if general.base:
-        base = dict(general.base)
-        moved = np.array([float(group.base) for group in general.groups])
-        found.append(Channel(base, modal.stiffness.sum(axis=1), moved, still))
-        if system.damping_reference == "base" and modal.viscous.any():
-            found.append(Channel(base, modal.viscous.sum(axis=1), still, still, rate=True))
+        found += _channels_of_base(system, modal)
     for j, group in enumerate(general.groups):
         if group.first.nu:
             found.append(Channel(dict(group.first.nu), none, still, np.eye(count)[j]))
@@ -135,7 +150,7 @@ def _phasors(channels: list[Channel], orders: tuple[int, ...], r: np.ndarray) ->
     table = np.zeros((r.size, len(channels), len(orders)), dtype=complex)
     for d, channel in enumerate(channels):
         for order, phasor in channel.phasors.items():
-            factor = 1j * order * r if channel.rate else np.ones_like(r)
+            factor = (1j * order * r) ** channel.rate if channel.rate else np.ones_like(r)
             table[:, d, orders.index(order)] = phasor * factor
     return np.ascontiguousarray(np.stack((table.real, -table.imag), axis=1))
 
@@ -314,7 +329,9 @@ def problem_of(
     load = np.abs(push[np.newaxis]) @ np.hypot(phasors[:, 0], phasors[:, 1]).sum(axis=2)[:, :, np.newaxis]
     sizes = (load[:, :, 0] / (modal.squares + (r * r)[:, np.newaxis])).max(axis=1)
     belt = np.array([group.first.wall_velocity for group in general.groups])
-    moved = np.array([float(group.base) for group in general.groups])
+    points = general.shaken_points
+    own = np.array([float(group.base) for group in general.groups])
+    moved = own if points is None else general.wall_shares
     tied = ties(general.vectors, moved, belt, spring)
     # a slider under a varying normal load slips between ends at rest, too: it is watched there
     tied[[bool(group.first.nu) for group in general.groups]] = False

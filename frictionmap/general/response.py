@@ -36,7 +36,7 @@ def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarr
     offset_z, offset_x = static_offset(system)
     x, v = steps.displacements(tau), steps.displacements(tau, 1)
     g = steps.at("z", tau)
-    z = (g if general.points is None else general.points.vectors @ x) + offset_z[:, np.newaxis]
+    z = (g if general.points is None else _relative(general, x, tau)) + offset_z[:, np.newaxis]
     friction = steps.at("f", tau)
     k, _ = steps.places(tau)
     sums = {}
@@ -59,6 +59,14 @@ def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarr
         y = g + offset_z[:, np.newaxis] - friction / np.where(kt > 0.0, kt, 1.0)
         found["y"] = np.where(kt > 0.0, y, np.nan) - belt
     return found
+
+
+def _relative(general: ContactSystem, x: np.ndarray, tau: np.ndarray) -> np.ndarray:
+    """Displacements in the contacts over tau, relative to their walls, by those of points (p, T), (N, T)."""
+    assert general.points is not None
+    own = np.array([float(group.base) for group in general.groups])
+    base = sum(((u * np.exp(1j * n * tau)).real for n, u in general.base.items()), np.zeros_like(tau))
+    return np.asarray(general.points.vectors @ x - np.multiply.outer(own, base))
 
 
 def load_over(general: ContactSystem, tau: np.ndarray) -> np.ndarray:

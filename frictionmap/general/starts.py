@@ -42,10 +42,13 @@ def _moving_states(system: System, modal: ModalSystem, r: np.ndarray) -> np.ndar
     alone = moving_alone(system, modal)
     speeds[:, alone] = load_velocities(system, modal, r, phase)[:, alone]
     state = np.stack((np.zeros_like(speeds), speeds, np.repeat(phase[:, np.newaxis], speeds.shape[1], 1)), 1)
-    if any(group.base for group in general.groups):
-        ones = modal.phi.T @ modal.mass.sum(axis=1)
+    joined, of_points = any(group.base for group in general.groups), general.shaken_points is not None
+    if (
+        joined != of_points
+    ):  # coordinates are relative to the base, and those of the state are not, or reverse
+        ones = modal.phi.T @ general.moved(modal.mass)
         for order, u in general.base.items():
-            wave = u * np.exp(1j * order * phase)[:, np.newaxis]
+            wave = (-u if of_points else u) * np.exp(1j * order * phase)[:, np.newaxis]
             state[:, 0] += wave.real * ones
             state[:, 1] += (1j * order * wave).real * ones
     return state
@@ -92,12 +95,12 @@ def _participation(system: System, modal: ModalSystem, order: int, turn: np.ndar
     where a wall is joined to it.
     """
     general = general_of(system)
-    u, by_damping = general.base.get(order, 0.0), modal.viscous.sum(axis=1)
+    u, by_damping = general.base.get(order, 0.0), general.moved(modal.viscous)
     load = general.forces.get(order, np.zeros(len(modal.mass))) + 0j * turn
     if any(group.base for group in general.groups):
-        load = load + u * turn**2 * modal.mass.sum(axis=1)
+        load = load + u * turn**2 * general.moved(modal.mass)
         by_damping = -by_damping * (system.damping_reference != "base")
     else:
-        load = load + u * modal.stiffness.sum(axis=1)
+        load = load + u * general.moved(modal.stiffness)
         by_damping = by_damping * (system.damping_reference == "base")
     return (load + 1j * turn * u * by_damping) @ modal.phi

@@ -18,14 +18,17 @@ def still_masses(general: ContactSystem, rests: np.ndarray) -> np.ndarray:
     rests : (N,) bool
     """
     holding = rests & ~general.elastic & np.array([not group.base for group in general.groups])
-    vectors = general.vectors[holding]
+    vectors, points = general.vectors[holding], general.points
     n = general.vectors.shape[1]
-    rows = np.eye(n) if general.points is None else general.points.shapes
+    rows = np.eye(n) if points is None else points.shapes
+    if points is not None and general.base:  # modes are relative to the base, which carries points, too
+        vectors = np.column_stack((vectors, (points.vectors @ points.carried)[holding]))
+        rows = np.column_stack((rows, points.carried))
     if not len(vectors):
         return np.zeros(len(rows), dtype=bool)
     # contacts that close loops span fewer directions than they are
     span = np.linalg.svd(vectors.T, full_matrices=False)[0][:, : rank_of(vectors)]
-    if general.points is None:
+    if points is None:
         return np.asarray(np.linalg.norm(rows - span @ span.T, axis=0) <= _ROUNDING)
     rest = np.linalg.norm(rows - rows @ span @ span.T, axis=1)
     return np.asarray(rest <= _ROUNDING * np.linalg.norm(rows, axis=1))

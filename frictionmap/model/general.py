@@ -236,9 +236,38 @@ class ContactSystem:
         """Constant loads on the masses, or points, (n,)."""
         return self.offset if self.points is None else self.points.offset
 
-    def displacements(self, order: int, motion: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    @property
+    def shaken_points(self) -> Points | None:
+        """The points of a structure given by modes on a moving base: modes are then relative to the base."""
+        return self.points if self.base else None
+
+    @property
+    def wall_shares(self) -> np.ndarray:
+        """Motion of the walls of contacts by that of the base, relative to which masses move, (N,).
+
+        A wall at rest moves by -u.
+        """
+        own = np.array([float(group.base) for group in self.groups])
+        if self.points is not None:
+            return np.asarray(own - self.points.vectors @ self.points.carried)
+        return own - np.array([group.vector.sum() for group in self.groups])
+
+    def moved(self, matrix: np.ndarray) -> np.ndarray:
+        """Product of a matrix (n, n) with the displacements by a unit displacement of the base, (n,)."""
+        points = self.shaken_points
+        return np.asarray(matrix.sum(axis=1) if points is None else matrix @ points.participation)
+
+    def direct_motion(self, order: int, r: np.ndarray) -> np.ndarray:
+        """Displacements of points beside those by modes, by a harmonic of load and base, (p,) or (n_r, p)."""
+        assert self.points is not None
+        found, points = self.points.pushed(order), self.shaken_points
+        return found if points is None else found + self.base.get(order, 0.0) * points.shaken(order * r)
+
+    def displacements(self, order: int, r: np.ndarray, motion: np.ndarray, forces: np.ndarray) -> np.ndarray:
         """Displacements of the masses, or points, by a harmonic motion (n_r, n) and forces (n_r, N)."""
-        return motion if self.points is None else self.points.displacements(order, motion, forces)
+        if self.points is None:
+            return motion
+        return self.points.displacements(self.direct_motion(order, r), motion, forces)
 
     def in_modes(self, points: Points) -> "ContactSystem":
         """The same contacts and loads of points, as they act on the modes."""
@@ -447,9 +476,11 @@ def check_contacts(system: Definition) -> tuple[Contact, ...] | None:
         if getattr(system, name) != default:
             raise InputError("cannot use", name, "with contacts: each contact has its own; omit one")
     found = checked_contacts(system.contacts)
-    first = (found[0].kind, found[0].masses)
+    masses: tuple = found[0].masses  # type: ignore[assignment]  # checked
+    first = (found[0].kind, masses)
     given = (system.contact, tuple(system.contact_masses))
-    if given not in (first, ("fixed-wall", (1,))):
+    counted = tuple(system.dofs.number(mass, mass_key(system, 1)) for mass in masses)  # of a copy
+    if given not in (first, (first[0], counted), ("fixed-wall", (1,))):
         raise InputError("cannot use", "contact", "with contacts: both define where friction acts; omit one")
     return found
 

@@ -44,6 +44,26 @@ class Points:
         return np.ones(len(self.shapes)) if self.influence is None else self.influence
 
     @property
+    def sag(self) -> np.ndarray:
+        """Displacements of the points by that acceleration beside those of the modes, (p,).
+
+        Raises
+        ------
+        InputError
+            A residual flexibility is given without them.
+        """
+        if self.residual is None:
+            return np.zeros(len(self.shapes))
+        if self.base_residual is None:
+            raise InputError(
+                "cannot use",
+                "residual",
+                "under a motion of the base without base_residual: this load displaces points beside the "
+                "modes; give base_residual, or omit residual",
+            )
+        return self.base_residual
+
+    @property
     def of_contacts(self) -> np.ndarray:
         """R c^T: displacements of the points by unit forces in the contacts beside those by modes, (p, N)."""
         if self.residual is None:
@@ -77,6 +97,10 @@ class Points:
         load = self.loads.get(order, np.zeros(len(self.shapes)))
         return np.zeros_like(load) if self.residual is None else self.residual @ load
 
+    def shaken(self, turn: np.ndarray) -> np.ndarray:
+        """Displacements (n_r, p) beside those by modes as the base moves by cos(n tau); turn = n r (n_r,)."""
+        return np.asarray(self.carried + np.outer(turn**2, self.sag))
+
     def static(self, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Displacements in the contacts (N,) and of the points (p,) under the constant loads; w (m,)."""
         elastic = w > 0.0  # the place along rigid-body modes is arbitrary
@@ -86,12 +110,15 @@ class Points:
             x = x + self.residual @ self.offset
         return self.vectors @ x, x
 
-    def displacements(self, order: int, modes: np.ndarray, forces: np.ndarray) -> np.ndarray:
-        """Displacements (n_r, p) by a harmonic of modes (n_r, m) and of forces in contacts (n_r, N)."""
+    def displacements(self, beside: np.ndarray, modes: np.ndarray, forces: np.ndarray) -> np.ndarray:
+        """Displacements (n_r, p) by a harmonic of modes (n_r, m) and of forces in contacts (n_r, N).
+
+        beside : (p,) or (n_r, p) those that the load and the base add
+        """
         with np.errstate(invalid="ignore"):  # an infinite one
-            found = modes @ self.shapes.T
+            found = modes @ self.shapes.T + beside
             if self.residual is not None:
-                found = found + self.pushed(order) - forces @ self.of_contacts.T
+                found = found - forces @ self.of_contacts.T
         return np.asarray(found)
 
 

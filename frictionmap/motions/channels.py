@@ -91,11 +91,7 @@ def wall_shares(system: System) -> np.ndarray:
 
     A wall at rest moves by -u.
     """
-    general = system.contact_system
-    points = general.points
-    if points is not None:
-        return np.array([float(group.base) for group in general.groups]) - points.vectors @ points.carried
-    return np.array([float(group.base) - group.vector.sum() for group in general.groups])
+    return system.contact_system.wall_shares
 
 
 def _iota(system: System, general: ContactSystem) -> np.ndarray:
@@ -117,14 +113,7 @@ def _under_base(system: System, general: ContactSystem, acceleration: Pieces) ->
     points = general.points
     if points is None or points.residual is None:
         return Channel(acceleration, push, still, still)
-    if points.base_residual is None:
-        raise InputError(
-            "cannot use",
-            "residual",
-            "under a motion of the base without base_residual: this load displaces points beside the modes; "
-            "give base_residual, or omit residual",
-        )
-    place = -points.base_residual
+    place = -points.sag
     return Channel(acceleration, push, -(points.vectors @ place), still, place=place)
 
 

@@ -47,11 +47,10 @@ def engine_of(system: System) -> Engine:
             "normal_record",
             "under a periodic load: it is for motions in time; use history, or give normal_load",
         )
-    if system.by_modes and system.excitation == "base":
-        raise InputError(
-            "cannot compute steady states of a structure given by modes on a moving base: this is offered "
-            "for chains and matrices, and motions in time by history; omit excitation, or give M and K"
-        )
+    shaken = system.contact_system.shaken_points
+    if shaken is not None:
+        _ = shaken.sag  # refused if it is not known
+        refuse_banks(system, "compute steady states of a structure given by modes on a moving base")
     if system.contact_system.has_law and system.rigid_modes:
         refuse_law(system, "compute steady states of a free structure")
     if system.contact_system.has_banks:

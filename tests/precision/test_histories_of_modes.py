@@ -82,8 +82,6 @@ def test_walls_on_a_moving_base(reference):
     for record in ("base", "velocity"):
         expected, found = (fm.history(one, RECORDS[record], beta=[0.2]) for one in (whole, modal))
         compare(found, expected)
-    with pytest.raises(InputError, match="steady states of a structure given by modes on a moving base"):
-        fm.sweep(modal, r=[0.5], beta=[0.1])
 
 
 def test_states_in_modes_and_at_points():

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from lcg_records import lcg
+from scipy.linalg import expm
 
 import frictionmap as fm
 
@@ -307,6 +308,47 @@ def test_a_turn_at_a_sample_is_no_creep(step, springs):
     assert int(ds.status) == 0
     assert float(ds.turns) == 14.0
     assert float(ds.residual) == pytest.approx(-0.05, abs=1e-12)
+
+
+@pytest.mark.parametrize("mass", np.linspace(0.5, 1.4, 10))
+def test_a_block_that_swings_on_its_contact_does_not_slip_again(mass):
+    """No spring and no damper: after its slip the force swings to its limit, and exactly to it, for ever."""
+    stiffness, friction = 0.53854953, 0.15026955
+    matrices = {"M": [[mass]], "K": [[0.0]], "C": [[0.0]]}
+    contact = fm.Contact(kind="fixed-wall", masses=(1,), stiffness=stiffness)
+    system = fm.System(matrices=matrices, frequency_scale=1.0, stiffness_scale=1.0, contacts=[contact])
+    record = fm.Record([0.0, 0.0, -1.99948058, 1.14852332, 0.26699955], 0.81511205, quantity="force", mass=1)
+    found = fm.history(system, record, beta=[friction], mu=[1.0], after=40.0)
+    assert found.slips.item() == 1
+    assert found.turns.item() == 0
+    stop = found.event_time.values.ravel()[1]
+    x = found.x.values.ravel()[found.time.values.ravel() >= stop]
+    assert np.ptp(x) <= 2.0 * friction / stiffness * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("how", ["hold", "linear"])
+@pytest.mark.parametrize("stiffness", [(3.75, 1.75), (None, 3.25)])
+def test_springs_of_contacts_without_friction_do_nothing(how, stiffness):
+    """beta = 0: the linear motion, also of a mass that the load reaches only through another one."""
+    mass, spring = np.eye(2), np.array([[1.75, -1.0], [-1.0, 1.25]])
+    contacts = [fm.Contact(kind="fixed-wall", masses=(1 + j,), stiffness=k) for j, k in enumerate(stiffness)]
+    matrices = {"M": mass, "K": spring, "C": np.zeros((2, 2))}
+    system = fm.System(matrices=matrices, frequency_scale=1.0, stiffness_scale=1.0, contacts=contacts)
+    values, step = np.array([0.0, 0.0, 2.0, -0.5, -1.0]), 0.25
+    record = fm.Record(values, step, quantity="force", mass=1, interpolation=how)
+    found = fm.history(system, record, beta=[0.0], mu=[1.0], after=4.0)
+    assert found.status.item() == 0
+    matrix = np.zeros((6, 6))
+    matrix[:2, 2:4], matrix[2:4, :2] = np.eye(2), -spring
+    matrix[2, 4], matrix[4, 5] = 1.0, 1.0
+    state = np.zeros(4)
+    slopes = np.diff(values) / step if how == "linear" else np.zeros(5)
+    for load, slope in zip(values, slopes, strict=False):
+        state = (expm(step * matrix) @ np.append(state, [load, slope]))[:4]
+    state = (expm(4.0 * matrix) @ np.append(state, [0.0, 0.0]))[:4]
+    motion = np.concatenate((found.x.values[..., -1].ravel(), found.v.values[..., -1].ravel()))
+    np.testing.assert_allclose(motion, state, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(found.work_damping.item(), 0.0, atol=1e-12)
 
 
 def test_forty_contacts_are_forty_masses():

@@ -23,6 +23,7 @@ from ..general.problem import (
     HALF,
     LOAD_TERMS,
     SIZE,
+    TERMS,
     F,
     H,
     Motion,
@@ -58,6 +59,7 @@ from .springs import (
     bends,
     follow_open,
     follow_walls,
+    has_open_spring,
     has_varying_spring,
     rest_tied,
     slip_at_start,
@@ -107,16 +109,31 @@ def make_memory(problem, still, watched, terms, lengths):
 
 
 @kernel
+def _bend_of_load(problem, friction, motion, event):
+    """How much the rate of a force over its limit falls in a unit of the step, at an event."""
+    x, j, side = event
+    force, nu = force_row(problem, j), normal_row(problem, j)
+    bend = 0.0
+    for k in range(TERMS, 1, -1):
+        load = side * motion.series[force, k] - friction.static[j] * motion.series[nu, k]
+        bend = bend * x - k * (k - 1) * load
+    return bend
+
+
+@kernel
 def _touches(problem, friction, motion, event, end):
     """Whether a force reaches its limit at an event and does not exceed it by more than rounding.
 
-    It then neither rises above the limit at the event nor is above it half way to the end, and there.
+    It then neither rises above the limit after the event nor is above it half way to the end, and there.
+    What crosses a limit at its peak by rounding error has a rate like the root of this error, and falls back.
     """
     x, j, side = event
     rate = -watched_slope(problem, friction, motion, x, j, side)
     size = friction.static[j] * value_at(motion.series, normal_row(problem, j), x)
     if rate * (end - x) > AT_LIMIT * size:
-        return False
+        bend = _bend_of_load(problem, friction, motion, event)
+        if rate >= bend * (end - x) or rate * rate > 2.0 * bend * AT_LIMIT * size:
+            return False
     for at in (0.5 * (x + end), end):
         force = value_at(motion.series, force_row(problem, j), at)
         limit = friction.static[j] * value_at(motion.series, normal_row(problem, j), at)
@@ -183,13 +200,14 @@ def _cross(problem, friction, memory, ties, kept, jumped, listed):
     x = 0.0
     motion.clock[0] = math.nan
     before = memory.before
-    show, opens = listed and jumped, has_varying_spring(problem)
+    show, opens = listed and jumped, has_open_spring(problem, friction)
     for _ in range(MOST_EVENTS):
         rest = 1.0 - x
         expand(problem, row, friction, x * h, 0 if x == 0.0 else -1, motion, True)
         _skip_zeros(problem, motion)
         if opens:
-            follow_open(problem, row, motion, before)
+            if follow_open(problem, row, friction, motion, before):
+                expand(problem, row, friction, x * h, 0 if x == 0.0 else -1, motion, True)
             list_changes(row, motion, before, x, kept)
         if show:
             keep_present(problem, row, motion, x, 0.0, kept)
@@ -218,7 +236,7 @@ def _cross(problem, friction, memory, ties, kept, jumped, listed):
         if opens:
             order = 1 if jumps(problem, friction, event[1], event[2]) else 2
             rest_tied(problem, row, friction, motion, ties, memory.rests, order)
-            turn_open(problem, row, motion, before)
+            turn_open(problem, row, friction, motion, before)
         stop_exactly(problem, row, motion)  # the rounding error of what `settle` took away
         note_places(problem, row, motion, before, x, kept.clock[0] + x * h, memory.places)
         list_changes(row, motion, before, x, kept)

@@ -13,6 +13,7 @@ import math
 
 from ..compiler import kernel
 from ..general.laws.coupled import is_coupled
+from ..general.laws.elastic import ends_rest
 from ..general.laws.kinds import has_force
 from ..general.problem import LOAD_TERMS, F, slide_velocity, varies, velocity_row
 from ..general.row import set_channels
@@ -37,6 +38,15 @@ def has_varying_spring(problem):
     found = False
     for j in range(problem.spring.size):
         found = found or (has_force(problem, j) and varies(problem, j))
+    return found
+
+
+@kernel
+def has_open_spring(problem, friction):
+    """Whether a contact with a spring may be without load: where it varies, and always without friction."""
+    found = has_varying_spring(problem)
+    for j in range(problem.spring.size):
+        found = found or (has_force(problem, j) and friction.kinetic[j] == 0.0 and not is_coupled(problem))
     return found
 
 
@@ -168,8 +178,10 @@ def _is_constant(problem, row, j):
 
 
 @kernel
-def _is_open(problem, row, j):
-    """Whether a contact with a spring is without load throughout the interval."""
+def _is_open(problem, row, friction, j):
+    """Whether a contact with a spring is without load, or friction, throughout the interval."""
+    if not varies(problem, j):
+        return friction.kinetic[j] == 0.0 and has_force(problem, j)
     nu = 1.0
     for d in range(problem.normal.shape[1]):
         nu += problem.normal[j, d] * row.loads[d, 0]
@@ -231,33 +243,41 @@ def _bend(problem, row, friction, motion, direct):
         elif motion.sense[j] != 0 and motion.sense[j] * w - lag < -_AT_REST * (abs(w) + abs(lag)):
             motion.fresh[j] = motion.sense[j]
             motion.sense[j] = 0
-        motion.idle[j] = motion.sense[j] == 0 and _is_open(problem, row, j)
+        motion.idle[j] = motion.sense[j] == 0 and _is_open(problem, row, friction, j)
 
 
 @kernel
-def turn_open(problem, row, motion, before):
+def turn_open(problem, row, friction, motion, before):
     """Let sliders of open contacts turn where they would stop, and rest where they rested before an event."""
     for j in range(motion.sense.size):
-        if motion.sense[j] == 0 and _is_open(problem, row, j):
+        if motion.sense[j] == 0 and _is_open(problem, row, friction, j):
             motion.sense[j] = -int(before[j])
             motion.idle[j] = before[j] == 0
             motion.fresh[j] = 0 if motion.idle[j] else 1
 
 
 @kernel
-def follow_open(problem, row, motion, before):
-    """Let sliders of open contacts move as these do in the present step; `before` takes their senses."""
+def follow_open(problem, row, friction, motion, before):
+    """Let sliders of open contacts move as these do in the present step; `before` takes their senses.
+
+    Returns
+    -------
+    bool : whether one has left its rest: the series of the step are those with its spring
+    """
+    left = False
     for j in range(motion.sense.size):
         before[j] = motion.sense[j]
-        if not _is_open(problem, row, j):
+        if not _is_open(problem, row, friction, j):
             continue
         first, w = motion.fresh[j], velocity_row(problem, j)
         while first < _MOST_ZEROS and motion.series[w, first] == 0.0:
             first += 1
-        rests = first == _MOST_ZEROS
+        rests = first == _MOST_ZEROS or (not varies(problem, j) and ends_rest(problem, motion, j))
         motion.sense[j] = 0 if rests else (1 if motion.series[w, first] > 0.0 else -1)
         motion.fresh[j] = 0 if rests else first
         motion.idle[j] = rests
+        left = left or (before[j] == 0 and not rests)
+    return left
 
 
 @kernel

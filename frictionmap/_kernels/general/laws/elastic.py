@@ -66,7 +66,7 @@ def change_phase(problem, friction, motion, x, contact, side):
 
 
 @kernel
-def _ends_rest(problem, motion, j):
+def ends_rest(problem, motion, j):
     """Whether the contacts that keep both ends of a spring at rest are all held."""
     tied = False
     for i in range(motion.sense.size):
@@ -96,7 +96,7 @@ def rest_springs(problem, friction, motion, order):
     for j in range(motion.sense.size):
         if varies(problem, j):  # its slider slips between ends at rest, too
             continue
-        rests = _ends_rest(problem, motion, j)
+        rests = ends_rest(problem, motion, j)
         limit = friction.kinetic[j]
         if rests and motion.sense[j] != 0:
             motion.state[F, j] = motion.sense[j] * limit

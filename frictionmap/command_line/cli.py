@@ -645,7 +645,7 @@ def _export(options: Options) -> None:
 
 
 def _info(options: Options) -> None:
-    from ..files.in_json import summary_json
+    from ..files.in_json import record_json, summary_json
     from ..files.reading import opened, read
     from ..files.slices import choose, parse_choices
     from ..files.studies import describe_study, is_study
@@ -655,7 +655,10 @@ def _info(options: Options) -> None:
     if options.file.is_file() and states_everything(options.file):
         from ..motions.record import Record
 
-        _print(Record.read(options.file).summary())
+        if options.at:
+            raise InputError("cannot use --at with a record: it has no axes; omit it")
+        record = Record.read(options.file)
+        _print(record_json(record) if options.json else record.summary())
     elif options.json:
         with opened(options.file) as ds:
             _print(summary_json(choose(ds, parse_choices(options.at)) if options.at else ds))

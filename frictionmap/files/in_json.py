@@ -1,6 +1,7 @@
 """Summary of a file as JSON, for scripts."""
 
 import json
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -8,6 +9,9 @@ import xarray as xr
 from ..datasets.labels import LABELS, regime_of_choice
 from ..datasets.schema import kind
 from ..regimes import NO_LOAD_REGIMES
+
+if TYPE_CHECKING:
+    from ..motions.record import Record
 
 #: Attributes of a file that the summary repeats.
 _ATTRIBUTES = ("title", "system", "source", "history")
@@ -28,6 +32,23 @@ def summary_json(ds: xr.Dataset) -> str:
     }
     if (name := regime_of_choice(ds)) in ds:
         found["cells"] = _cells(ds[name])
+    return json.dumps(found, indent=2, ensure_ascii=False)
+
+
+def record_json(record: "Record") -> str:
+    """Return what a record is, as JSON: samples, steps, duration, peak of the samples and its time, units."""
+    sizes = np.abs(record.values)
+    steps = np.diff(record.times) if record.dt is None else np.array([record.dt])
+    found = {
+        "kind": "record",
+        **{name: getattr(record, name) for name in ("name", "quantity", "unit", "interpolation", "source")},
+        "note": record.note,
+        "samples": int(sizes.size),
+        "steps": {"least": float(steps.min()), "most": float(steps.max())},
+        "duration": record.duration,
+        "peak": float(sizes.max()) * abs(record.scale),
+        "peak_time": float(record.times[sizes.argmax()]),
+    }
     return json.dumps(found, indent=2, ensure_ascii=False)
 
 

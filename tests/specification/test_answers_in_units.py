@@ -1,5 +1,6 @@
 """Values in the units that suit them, remedies that work when pasted, and records described by `info`."""
 
+import json
 import re
 import tomllib
 from pathlib import Path
@@ -136,6 +137,13 @@ def test_info_describes_a_record(tmp_path, capsys):
         ("peak", "0.25 g at 0.01 s"),
     ):
         assert re.search(rf"^  {name} +{re.escape(value)}$", out, re.MULTILINE), out
+    assert main(["info", str(path), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["kind"], found["quantity"], found["unit"]) == ("record", "acceleration", "g")
+    assert (found["samples"], found["duration"]) == (4, 0.03)
+    assert (found["peak"], found["peak_time"], found["steps"]) == (0.25, 0.01, {"least": 0.01, "most": 0.01})
+    assert main(["info", str(path), "--at", "r=1"]) == 2
+    assert "omit it" in capsys.readouterr().err
 
 
 def test_small_numbers_have_their_power_at_the_end_of_the_axis():

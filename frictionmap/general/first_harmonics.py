@@ -40,9 +40,10 @@ def steady_phasors(system: System, r: np.ndarray, beta: np.ndarray) -> tuple[np.
     regime = np.full(r.size, regimes.UNRESOLVED, np.int8)
     free = beta == 0.0
     general = general_of(system)
-    alone = system.modes.mass_responses(at) if general.shaken_points is None else solve_each(
-        *linear_parts(system, system.modes.stiffness, 1, at)
-    )  # fmt: skip
+    if general.shaken_points is None:
+        alone = system.modes.mass_responses(at)
+    else:
+        alone = solve_each(*linear_parts(system, system.modes.stiffness, 1, at))
     without = general.displacements(1, at, alone, np.zeros((at.size, general.count)))
     phasors[free] = without[index[free]]
     regime[free] = regimes.CONTINUOUS

@@ -43,9 +43,7 @@ def _moving_states(system: System, modal: ModalSystem, r: np.ndarray) -> np.ndar
     speeds[:, alone] = load_velocities(system, modal, r, phase)[:, alone]
     state = np.stack((np.zeros_like(speeds), speeds, np.repeat(phase[:, np.newaxis], speeds.shape[1], 1)), 1)
     joined, of_points = any(group.base for group in general.groups), general.shaken_points is not None
-    if (
-        joined != of_points
-    ):  # coordinates are relative to the base, and those of the state are not, or reverse
+    if joined != of_points:  # the start is relative to the base and the coordinates are not, or the reverse
         ones = modal.phi.T @ general.moved(modal.mass)
         for order, u in general.base.items():
             wave = (-u if of_points else u) * np.exp(1j * order * phase)[:, np.newaxis]

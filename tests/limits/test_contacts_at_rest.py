@@ -327,3 +327,19 @@ def test_harmonics_of_a_structure_with_contacts_at_rest_solve_its_equations(syst
             assert abs(np.angle(np.exp(1j * apart))) < 1e-4
         else:  # a mass that its contact holds
             assert np.isnan(lag)
+
+
+@pytest.mark.parametrize("mu", [1.0, 1.0001, 1.3])
+def test_masses_held_from_the_start_keep_their_distance(mu):
+    """Mass 1 moves with the base, x1 = cos(tau), and holds mass 2, which was at 0: x2 = cos(tau) - 1."""
+    system = fm.System(
+        mass_ratios=[1.0, 0.7], stiffness_ratios=[1.0, 1.3], damping_ratios=0.02, excitation="base",
+        contacts=[fm.Contact("joined-base-wall", 1, mu=mu), fm.Contact("between-masses", (1, 2), ratio=0.5)],
+    )  # fmt: skip
+    ds = fm.sweep(
+        system, np.linspace(0.2, 1.4, 9), [30.0], outputs=["regime", "midpoint", "contact_midpoint"]
+    )
+    assert (ds.regime == fm.regimes.PERMANENT_STICKING).all()
+    np.testing.assert_allclose(ds.midpoint.values.reshape(-1, 2), [[0.0, -1.0]] * 9, atol=1e-11)
+    first = fm.response(system, 0.2, 30.0).x[:, 0]
+    np.testing.assert_allclose(first, [1.0, 0.0], atol=1e-11)

@@ -234,13 +234,18 @@ def _find_from_start(problem, friction, cycles, tolerance, workspace):
             search = next_search(halves)
             longer = find_long_recurrence(row, memory, ring, base)
             tried = longer if longer > 0 else tried
-        if tried > 0:
+        # half a period later, the section has the mirror image of the motion
+        if tried > 0 and (halves % 2 == 0 or (tried % 2 == 1 and not any_rests(memory.counts))):
             found = try_return(problem, friction, tried, tolerance, workspace)
             spent += found.cycles
             if found.status == REPEATS:
-                return Steady(REPEATS, found.halves, spent + 0.5 * halves)
-            pause += 1
-            wait = pause
+                if halves % 2 == 0 or not any_rests(memory.counts):
+                    return Steady(REPEATS, found.halves, spent + 0.5 * halves)
+                restore_friction(friction, ring.friction)
+                go_back(memory, ring, 0)
+            else:
+                pause += 1
+                wait = pause
         if due and not is_free(problem):
             status, more = _creep_to_rest(problem, friction, tolerance, workspace)
             spent += more

@@ -1,7 +1,7 @@
 """Summary of a file as JSON, for scripts."""
 
 import json
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -9,9 +9,6 @@ import xarray as xr
 from ..datasets.labels import LABELS, regime_of_choice
 from ..datasets.schema import kind
 from ..regimes import NO_LOAD_REGIMES
-
-if TYPE_CHECKING:
-    from ..motions.record import Record
 
 #: Attributes of a file that the summary repeats.
 _ATTRIBUTES = ("title", "system", "source", "history")
@@ -35,8 +32,8 @@ def summary_json(ds: xr.Dataset) -> str:
     return json.dumps(found, indent=2, ensure_ascii=False)
 
 
-def record_json(record: "Record") -> str:
-    """Return what a record is, as JSON: samples, steps, duration, peak of the samples and its time, units."""
+def record_json(record: Any) -> str:
+    """Return what a `Record` is, as JSON: samples, steps, duration, peak of the samples and its time, units."""
     sizes = np.abs(record.values)
     steps = np.diff(record.times) if record.dt is None else np.array([record.dt])
     found = {

@@ -479,8 +479,10 @@ def check_contacts(system: Definition) -> tuple[Contact, ...] | None:
     masses: tuple = found[0].masses  # type: ignore[assignment]  # checked
     first = (found[0].kind, masses)
     given = (system.contact, tuple(system.contact_masses))
-    counted = tuple(system.dofs.number(mass, mass_key(system, 1)) for mass in masses)  # of a copy
-    if given not in (first, (first[0], counted), ("fixed-wall", (1,))):
+    if given in (first, ("fixed-wall", (1,))):
+        return found
+    counted = contact_rows(masses, found[0].kind, system.dofs, mass_key(system, 1))  # as a copy has them
+    if given != (found[0].kind, counted):
         raise InputError("cannot use", "contact", "with contacts: both define where friction acts; omit one")
     return found
 

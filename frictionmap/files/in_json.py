@@ -33,7 +33,7 @@ def summary_json(ds: xr.Dataset) -> str:
 
 
 def record_json(record: Any) -> str:
-    """Return what a `Record` is, as JSON: samples, steps, duration, peak of the samples and its time, units."""
+    """Return what a `Record` is, as JSON: samples, steps, duration, the largest sample and its time."""
     sizes = np.abs(record.values)
     steps = np.diff(record.times) if record.dt is None else np.array([record.dt])
     found = {

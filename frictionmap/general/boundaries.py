@@ -73,9 +73,8 @@ def _points_at_rest(system: System, modal: ModalSystem, r: np.ndarray) -> np.nda
     general = general_of(system)
     assert general.points is not None
     vectors, iota = general.points.vectors, modal.phi.T @ general.moved(modal.mass)
-    own = np.array([float(group.base) for group in general.groups])
     u, rate = sum(general.base.values()), sum(1j * n * one for n, one in general.base.items())
-    moved = {row.tobytes(): row for row, base in zip(vectors, own, strict=True) if base}
+    moved = {row.tobytes(): row for row, base in zip(vectors, general.joined, strict=True) if base}
     x = sum((row / (row @ row) for row in moved.values()), np.zeros(vectors.shape[1]))
     state = np.zeros((r.size, 2, iota.size))
     state[:, 0], state[:, 1] = -u.real * iota, -rate.real * iota

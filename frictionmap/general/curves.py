@@ -18,7 +18,7 @@ from .boundaries import find_boundaries, stays_at_rest
 from .certificate import certified_beta
 from .cycle import equivalent_of, first_harmonics, harmonic_values, parts, phase_values, work_values
 from .dataset import boundary_variables, contact_coordinates, refuse_static
-from .held import held_ranges, possible_forces
+from .held import base_seen_by_dampers, held_ranges, possible_forces
 from .loops import undetermined_forces
 from .maps import solve_cells
 from .observed import wants_further
@@ -94,17 +94,15 @@ def _held(system: System, r: float, lowest: np.ndarray, highest: int) -> _Held:
     forces, motions = possible_forces(system, at)
     whole = max(highest, *motions)
     x, z, f = (np.zeros((rows, whole + 1), dtype=complex) for rows in (n, count, count))
-    damping, moved = 0.0, np.array([float(group.base) for group in general.groups])
-    of_points = general.shaken_points is not None
+    damping, moved = 0.0, general.joined
+    seen = base_seen_by_dampers(system)
     for order, motion in motions.items():
         u = general.base.get(order, 0.0)
         x[:, order] = general.displacements(order, at, motion, forces[order])[0]
         f[:, order] = forces[order][0]
         vectors = general.vectors if general.points is None else general.points.vectors
         z[:, order] = np.where(general.elastic, vectors @ x[:, order] - u * moved, 0.0)
-        if of_points != (system.damping_reference == "base"):  # modes at points are relative to the base
-            motion = motion + u * (general.moved(system.modes.mass) if of_points else -1.0)
-        rate = order * motion[0]
+        rate = order * (motion[0] if seen is None else motion[0] + u * seen)
         damping += np.pi * r * float((rate.conj() @ system.modes.damping @ rate).real)
     x[np.abs(x) <= _ROUNDING * np.abs(x).max()] = 0.0  # masses that contacts hold
     if not system.rigid_modes:  # which come to any place

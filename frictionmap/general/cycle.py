@@ -4,6 +4,7 @@ import numpy as np
 
 from .._kernels.general.problem import SECTION
 from ..model.system import System
+from .held import base_seen_by_dampers
 from .loops import undetermined_forces
 from .outputs import output_values
 from .problem import general_of, static_offset
@@ -45,7 +46,7 @@ def _contact_harmonics(system: System, steps: Steps, x: np.ndarray, highest: int
     found = general.points.vectors @ x
     for order, u in general.base.items():
         if order <= highest:
-            found[:, order] -= u * np.array([float(group.base) for group in general.groups])
+            found[:, order] -= u * general.joined
     return found
 
 
@@ -74,13 +75,10 @@ def _damping_work(system: System, steps: Steps) -> float:
     x = 0.5 * (1.0 + nodes) * (steps.lengths[:, np.newaxis] / steps.h)
     series = steps.series[:, steps.rows("q")]
     velocity = steps.values(series[:, :, np.newaxis, :], x[:, np.newaxis, :], 1)
-    damping, general = steps.problem.damping, general_of(system)
-    of_points = general.shaken_points is not None
-    if of_points != (system.damping_reference == "base"):  # modes at points are relative to the base
-        carried = general.moved(steps.modal.mass) if of_points else -np.ones(len(steps.modal.phi))
-        velocity = steps.modal.phi @ velocity + np.multiply.outer(
-            _base_velocity(system, steps, x), carried
-        ).swapaxes(1, 2)
+    damping, seen = steps.problem.damping, base_seen_by_dampers(system)
+    if seen is not None:
+        base = _base_velocity(system, steps, x)
+        velocity = steps.modal.phi @ velocity + seen[:, np.newaxis] * base[:, np.newaxis, :]
         damping = steps.modal.viscous
     power = np.einsum("sig,ij,sjg->sg", velocity, damping, velocity)
     whole = np.sum(power * 0.5 * weights * steps.lengths[:, np.newaxis])

@@ -37,6 +37,17 @@ _SPAN = 1e-10
 _ENDLESS = 1e12
 
 
+def base_seen_by_dampers(system: System) -> np.ndarray | None:
+    """What a unit displacement of the base adds to the motion that the dampers see, (n,); None: nothing.
+
+    Modes at points are relative to the base, all other motions are not.
+    """
+    points = general_of(system).shaken_points
+    if (points is None) != (system.damping_reference == "base"):
+        return None
+    return -np.ones(system.n) if points is None else general_of(system).moved(system.modes.mass)
+
+
 def linear_parts(
     system: System, stiffness: np.ndarray, order: int, r: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -170,7 +181,7 @@ def held_ranges(system: System, r: np.ndarray, further: bool = False) -> tuple[n
 def sliding_phasors(system: System, r: np.ndarray) -> np.ndarray:
     """Displacements in the contacts without friction, (n_r, N, H) by order; inf at a resonance."""
     general = general_of(system)
-    moved = np.array([float(group.base) for group in general.groups])
+    moved = general.joined
     found = []
     for order in orders_of(general):
         x = solve_each(*linear_parts(system, system.modes.stiffness, order, r))

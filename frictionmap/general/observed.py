@@ -96,7 +96,7 @@ def _rows_with_forces(system: System, modal: ModalSystem, further: bool) -> np.n
     whole = np.hstack((rows.shapes, rows.loads, rows.forces, np.zeros((n, 1))))
     contacts = general.points.vectors @ whole
     if general.base:  # the first channel is its place, and the second one its acceleration
-        contacts[:, m] -= np.array([float(group.base) for group in general.groups])
+        contacts[:, m] -= general.joined
     if not further:
         return np.ascontiguousarray(np.vstack((whole, contacts)))
     acceleration = np.zeros_like(whole)

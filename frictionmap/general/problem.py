@@ -114,8 +114,7 @@ def _channels_of_base(system: System, modal: ModalSystem) -> list[Channel]:
     base, points, still = dict(general.base), general.shaken_points, np.zeros(general.count)
     relative, viscous = system.damping_reference == "base", general.moved(modal.viscous)
     if points is None:
-        moved = np.array([float(group.base) for group in general.groups])
-        found = [Channel(base, general.moved(modal.stiffness), moved, still)]
+        found = [Channel(base, general.moved(modal.stiffness), general.joined, still)]
     else:
         inertia = general.moved(modal.mass)
         found = [
@@ -329,9 +328,7 @@ def problem_of(
     load = np.abs(push[np.newaxis]) @ np.hypot(phasors[:, 0], phasors[:, 1]).sum(axis=2)[:, :, np.newaxis]
     sizes = (load[:, :, 0] / (modal.squares + (r * r)[:, np.newaxis])).max(axis=1)
     belt = np.array([group.first.wall_velocity for group in general.groups])
-    points = general.shaken_points
-    own = np.array([float(group.base) for group in general.groups])
-    moved = own if points is None else general.wall_shares
+    moved = general.joined if general.shaken_points is None else general.wall_shares
     tied = ties(general.vectors, moved, belt, spring)
     # a slider under a varying normal load slips between ends at rest, too: it is watched there
     tied[[bool(group.first.nu) for group in general.groups]] = False

@@ -64,9 +64,8 @@ def _traces(system: System, steps: Steps, tau: np.ndarray) -> dict[str, np.ndarr
 def _relative(general: ContactSystem, x: np.ndarray, tau: np.ndarray) -> np.ndarray:
     """Displacements in the contacts over tau, relative to their walls, by those of points (p, T), (N, T)."""
     assert general.points is not None
-    own = np.array([float(group.base) for group in general.groups])
     base = sum(((u * np.exp(1j * n * tau)).real for n, u in general.base.items()), np.zeros_like(tau))
-    return np.asarray(general.points.vectors @ x - np.multiply.outer(own, base))
+    return np.asarray(general.points.vectors @ x - np.multiply.outer(general.joined, base))
 
 
 def load_over(general: ContactSystem, tau: np.ndarray) -> np.ndarray:

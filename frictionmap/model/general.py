@@ -242,15 +242,19 @@ class ContactSystem:
         return self.points if self.base else None
 
     @property
+    def joined(self) -> np.ndarray:
+        """1 of contacts whose wall is joined to the base, else 0; (N,)."""
+        return np.array([float(group.base) for group in self.groups])
+
+    @property
     def wall_shares(self) -> np.ndarray:
         """Motion of the walls of contacts by that of the base, relative to which masses move, (N,).
 
         A wall at rest moves by -u.
         """
-        own = np.array([float(group.base) for group in self.groups])
         if self.points is not None:
-            return np.asarray(own - self.points.vectors @ self.points.carried)
-        return own - np.array([group.vector.sum() for group in self.groups])
+            return np.asarray(self.joined - self.points.vectors @ self.points.carried)
+        return self.joined - np.array([group.vector.sum() for group in self.groups])
 
     def moved(self, matrix: np.ndarray) -> np.ndarray:
         """Product of a matrix (n, n) with the displacements by a unit displacement of the base, (n,)."""

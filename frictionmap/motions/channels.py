@@ -86,14 +86,6 @@ def is_relative_damping(system: System) -> bool:
     return system.excitation != "base" or system.damping_reference == "base"
 
 
-def wall_shares(system: System) -> np.ndarray:
-    """Motion of the walls of contacts by that of the base, relative to which the masses move, (N,).
-
-    A wall at rest moves by -u.
-    """
-    return system.contact_system.wall_shares
-
-
 def _iota(system: System, general: ContactSystem) -> np.ndarray:
     """Coordinates of the structure by a unit displacement of the base: of modes their participation, (n,)."""
     points = general.points
@@ -146,7 +138,7 @@ def _sum(direction: np.ndarray) -> float:
 
 def sees_place(system: System) -> bool:
     """Whether the displacement of the base acts on a structure, too."""
-    return bool(wall_shares(system).any()) or ground_of(system.contact_system).acts
+    return bool(system.contact_system.wall_shares.any()) or ground_of(system.contact_system).acts
 
 
 def _base(system: System, general: ContactSystem, record: Record, pieces: Pieces) -> list[Channel]:
@@ -159,7 +151,7 @@ def _base(system: System, general: ContactSystem, record: Record, pieces: Pieces
     found = [_under_base(system, general, acceleration)]
     if placed:
         none, moves_on = np.zeros(found[0].push.size), record.quantity != "displacement"
-        found.append(Channel(place, none, wall_shares(system), still, moves_on, True))
+        found.append(Channel(place, none, general.wall_shares, still, moves_on, True))
     if grounded:
         push = -system.modes.damping @ _iota(system, general)
         found.append(Channel(rate, push, still, still, record.quantity != "displacement"))

@@ -436,8 +436,7 @@ class Record(Shown):
         return "\n".join((f"{self.name or 'no name'} [record]", *self._rows()))
 
     def _rows(self) -> Iterator[str]:
-        times = np.arange(self.values.size) * self.dt if self.time is None else self.time
-        at, steps = float(times[np.argmax(np.abs(self.values))]), np.diff(times)
+        at, steps = float(self.times[np.argmax(np.abs(self.values))]), np.diff(self.times)
         second, unit = ("", "") if self.unit is None else (" s", f" {self.unit}")
         step = f"{steps[0]:.6g}{second}" if self.dt else f"{steps.min():.6g} to {steps.max():.6g}{second}"
         for name, text in (

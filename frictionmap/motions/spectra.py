@@ -75,13 +75,19 @@ def load_of(record: Record) -> Pieces:
     return pieces._replace(terms=sign * _size(record) * pieces.terms)
 
 
+def _refuse_units(given: Any, name: str, values: Any, records: tuple[Record, ...]) -> None:
+    """Refuse values with a unit, which `values` are, beside records without one."""
+    if values is not None and records[0].unit is None:
+        hint = "be numbers without a unit, because the records have none"
+        raise InputError(name, f"must {hint}; got {checks.one_line(given)}")
+
+
 def _friction(given: Any, records: tuple[Record, ...]) -> np.ndarray:
     """Friction force over the mass."""
     values = quantities(given, "friction", "acceleration")
-    if (values is not None) != (records[0].unit is not None):
+    _refuse_units(given, "friction", values, records)
+    if values is None and records[0].unit is not None:
         hint = 'have a unit, such as "0.05 g", because the records have one'
-        if values is not None:
-            hint = "be numbers without a unit, because the records have none"
         raise InputError("friction", f"must {hint}; got {checks.one_line(given)}")
     return checks.axis(given if values is None else [float(one) for one in values], "friction", least=0.0)
 
@@ -89,13 +95,8 @@ def _friction(given: Any, records: tuple[Record, ...]) -> np.ndarray:
 def _periods(given: Any, records: tuple[Record, ...]) -> np.ndarray:
     """Periods > 0, in seconds or those of records without a unit; infinite without a spring."""
     seconds = quantities(given, "period", "time")
+    _refuse_units(given, "period", seconds, records)
     if seconds is not None:
-        if records[0].unit is None:
-            raise InputError(
-                "period",
-                "must be numbers without a unit, because the records have none; got "
-                f"{checks.one_line(given)}",
-            )
         given = [float(one) for one in seconds]
     values = np.atleast_1d(checks.array(given, "period"))
     if values.dtype.kind in "iuf" and values.ndim == 1 and values.size and np.isposinf(values[-1]):

@@ -114,7 +114,7 @@ def varying(drive: Drive) -> np.ndarray:
 def ties_of(structure: Structure) -> np.ndarray:
     """The rigid contacts that keep both ends of springs at rest, see `general.problem.ties`."""
     general = structure.system.contact_system
-    moved = np.array([float(group.base) for group in general.groups])
+    moved = general.joined
     return ties(general.vectors, moved, _belts(general), structure.spring)
 
 

@@ -241,7 +241,7 @@ def _find_from_start(problem, friction, cycles, tolerance, workspace):
             if found.status == REPEATS:
                 if halves % 2 == 0 or not any_rests(memory.counts):
                     return Steady(REPEATS, found.halves, spent + 0.5 * halves)
-                restore_friction(friction, ring.friction)
+                restore_friction(friction, ring.friction)  # what rests was at its mirror image
                 go_back(memory, ring, 0)
             else:
                 pause += 1

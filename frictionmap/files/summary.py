@@ -242,7 +242,7 @@ def _variables(ds: xr.Dataset, names: Sequence[str], further: Sequence[str] = ()
 
 def _estimates(ds: xr.Dataset, verbose: bool) -> Iterator[str]:
     """Describe the origin of the data and the estimates."""
-    yield from _entry("data", _printable(source_of_data(ds)))
+    yield from _entry("data", _printable(source_of_data(ds)), break_long_words=False)  # a path can be copied
     yield "estimates"
     for line in describe_estimates(ds, verbose):
         shown = "".join(c if c.isprintable() else "?" for c in f"  {line}")
@@ -261,7 +261,7 @@ def _printable(text: str) -> str:
     return "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))
 
 
-def _entry(name: str, text: str) -> list[str]:
+def _entry(name: str, text: str, break_long_words: bool = True) -> list[str]:
     """Format a name and its text, wrapped to at most three lines."""
     return wrapped(
         f"  {name:<{_INDENT - 3}} {text}",
@@ -269,6 +269,7 @@ def _entry(name: str, text: str) -> list[str]:
         subsequent_indent=" " * _INDENT,
         max_lines=3,
         placeholder=" ...",
+        break_long_words=break_long_words,
     )
 
 

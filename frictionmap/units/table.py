@@ -193,13 +193,13 @@ _NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
 def wrapped(text: str, width: int, **options: Any) -> list[str]:
-    """Wrap text; no line ends inside a word, between a number and its unit, or beside an equals sign.
+    """Wrap text; no line ends between a number and its unit, or beside an equals sign.
 
     options : those of `textwrap.wrap`
     """
     joined = _WITH_UNIT.sub(lambda found: found[0].replace(" ", _NO_BREAK), text)
     joined = joined.replace(" = ", f"{_NO_BREAK}={_NO_BREAK}")
-    lines = textwrap.wrap(joined, width, break_on_hyphens=False, break_long_words=False, **options)
+    lines = textwrap.wrap(joined, width, break_on_hyphens=False, **options)
     return [line.replace(_NO_BREAK, " ") for line in lines]
 
 

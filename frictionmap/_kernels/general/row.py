@@ -21,6 +21,11 @@ _KEPT_WHOLE = 6
 _KEPT_NUMBERS = 1 << 27
 _LEAST_KEPT, _MOST_KEPT = 16, 256
 
+#: The same without parts of intervals: in a period, motions of 20 contacts have some hundred patterns, and
+#: filling tables anew takes most of the time where they do not fit.
+_KEPT_NUMBERS_ALONE = 1 << 24
+_LEAST_KEPT_ALONE, _MOST_KEPT_ALONE = 256, 1024
+
 #: Contacts for whose patterns parts of intervals are kept, at most: more have so many patterns that few of
 #: them come back often enough, and filling parts takes as long as some 100 intervals.
 _MOST_WITH_PARTS = 8
@@ -78,8 +83,9 @@ def _kept_patterns(problem, most):
         return 1 << contacts
     size = state_size(problem)
     numbers = (LONG * modes + size + contacts) * padded(size)
-    if keeps_parts(problem):
-        numbers += WIDTH * contacts * (size + contacts) + most * (WIDTH * contacts + size)
+    if not keeps_parts(problem):
+        return min(max(_KEPT_NUMBERS_ALONE // numbers, _LEAST_KEPT_ALONE), _MOST_KEPT_ALONE)
+    numbers += WIDTH * contacts * (size + contacts) + most * (WIDTH * contacts + size)
     kept = min(max(_KEPT_NUMBERS // numbers, _LEAST_KEPT), _MOST_KEPT)
     return kept - kept % _LEAST_KEPT
 

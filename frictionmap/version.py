@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-__version__ = "0.4.0.dev0"
+__version__ = "0.4.0"
 
 #: Rooms of the package that no cell of a map comes from: what draws, asks and identifies.
 _NO_MATTER = frozenset(("command_line", "design", "explorer", "identify", "pictures"))

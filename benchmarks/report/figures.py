@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 #: Colours of a picture: lines and text need few, and the file is a third as large.
-_COLOURS = 256
+_COLOURS = 40
 
 
 def new_figure(width: float, height: float) -> Figure:

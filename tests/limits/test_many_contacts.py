@@ -1,5 +1,7 @@
 """Nine to 64 contacts: against rows of two other programs, equivalent systems, and second starts."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from general_systems import frame
@@ -32,6 +34,28 @@ def test_a_frame_of_20_storeys(reference_table):
         assert found == pytest.approx(wanted["contact_peak_to_peak"], abs=1e-10 * largest), row["id"]
         counts = "slips_per_cycle" if kt else "stops_per_cycle"
         assert ds[counts].values.ravel().tolist() == wanted[counts], row["id"]
+
+
+@pytest.mark.parametrize(("n", "seed"), [(5, 0), (6, 1), (8, 2)])
+def test_contacts_without_friction_change_nothing(n, seed):
+    """With nine contacts derivatives are carried in the coordinates that held ones leave free."""
+    friction = np.random.default_rng(seed).uniform(0.2, 1.0, n)
+    few = frame(n, friction=friction)
+    idle = [fm.Contact("fixed-wall", 2 + j, ratio=0.0) for j in range(9 - n)]
+    many = dataclasses.replace(few, contacts=[*few.contacts, *idle])
+    r = few.modes.w[0] * np.array([0.8, 1.7, 4.0])
+    beta = fm.boundaries(few, r).beta_stick.values.min() * np.array([0.3, 0.6, 0.9])
+    outputs = ("contact_peak_to_peak", "stops_per_cycle", "multiplier")
+    wanted, found = (fm.sweep(system, r, beta, outputs=outputs) for system in (few, many))
+    own = found.isel(contact=slice(n))
+    largest = wanted.contact_peak_to_peak.values.max()
+    assert (wanted.stops_per_cycle > 0).any()
+    assert own.contact_peak_to_peak.values == pytest.approx(
+        wanted.contact_peak_to_peak.values, abs=1e-12 * largest
+    )
+    assert np.array_equal(own.stops_per_cycle, wanted.stops_per_cycle, equal_nan=True)
+    # a double multiplier moves by the root of rounding errors
+    assert found.multiplier.values == pytest.approx(wanted.multiplier.values, abs=1e-6, nan_ok=True)
 
 
 def test_equal_dampers_reach_their_limits_together():

@@ -19,6 +19,7 @@ pattern        which contacts slide and which are held after an event
 loops          rigid contacts that close loops: which are held, and with which forces
 events         turns, stops and slowest instants of slides
 record         extremes, works, steps and events of a steady motion
+left_free      derivatives of motions in which many contacts are held, in the coordinates that are free
 tangent        derivatives of the motion by its state at the section
 glide          intervals in which nothing happens, by tables
 follow         the motion from one phase of the load to another

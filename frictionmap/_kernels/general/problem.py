@@ -168,6 +168,7 @@ class Row(NamedTuple):
     patterns: np.ndarray  # (P,) int: number of the pattern of every place in the tables below; 0: none yet
     columns: np.ndarray  # (P, LONG, m, S) series of the modes by the state; size = 2 m + N, or 2 m if rigid
     onward: np.ndarray  # (P, size, S) the state at the end of the interval by that at its beginning
+    bases: np.ndarray  # (P, 3, m, m) see `left_free`; one place where it is not used
     grips: np.ndarray  # (P, N, S) forces of rigid contacts that are held, by the state
     parts: Parts
     kinetic: np.ndarray  # (N,) kinetic friction of the tables where they depend on it, see `follow`
@@ -204,6 +205,7 @@ class Motion(NamedTuple):
     event: np.ndarray  # (4, N) scratch of an event, see `follow`
     springs: np.ndarray  # (N + 1,) int: coupled contacts that act as springs; the last: how many
     grip: np.ndarray  # (N + 1, N) factors of their flexibility; its last row is scratch
+    reduced: np.ndarray  # (4 m, S) the derivatives in the coordinates of `left_free`; scratch
 
 
 @kernel

@@ -106,6 +106,7 @@ def make_row(problem):
         np.zeros((harmonics, WIDTH)),
         np.empty((2, channels, harmonics)), np.empty((most * channels, WIDTH)), np.zeros(kept, np.int64),
         np.empty((kept, LONG, modes, padded(size))), np.empty((kept, size, padded(size))),
+        np.empty((1 if keeps_parts(problem) else kept, 3, modes, modes)),
         np.empty((kept, contacts, padded(size))),
         _make_parts(problem, kept if keeps_parts(problem) else 1, most),
         np.zeros(contacts), make_keys(contacts, key_bits(problem), kept),
@@ -127,7 +128,7 @@ def make_motion(problem):
         np.zeros((8, WIDTH)), np.zeros(1), np.zeros((size, rows)), np.zeros((2, size, rows)),
         np.zeros((contacts, rows)), np.zeros(rows), np.zeros(size + contacts),
         np.zeros(contacts, np.int64), np.zeros(contacts), np.zeros((4, contacts)),
-        np.zeros(contacts + 1, np.int64), np.zeros((contacts + 1, contacts)),
+        np.zeros(contacts + 1, np.int64), np.zeros((contacts + 1, contacts)), np.zeros((4 * modes, rows)),
     )  # fmt: skip
 
 

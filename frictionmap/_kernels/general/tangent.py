@@ -12,6 +12,7 @@ from .keys import begin_key, find_key, put_digit
 from .laws.coupled import is_coupled
 from .laws.kinds import has_force, holding_stiffness, is_spare, is_spring, keeps_force, state_size
 from .laws.speed import has_law, key_bits
+from .left_free import advance_free, fill_free, hold_free, leaves_few
 from .problem import INVERSE, LONG, TERMS
 
 #: Rows of a product that are computed side by side.
@@ -240,7 +241,8 @@ def _fill_pattern(problem, row, motion, slot):
         for i in range(size):
             row.columns[slot, 0, m, i] = 1.0 if i == m else 0.0
             row.columns[slot, 1, m, i] = 1.0 if i == modes + m else 0.0
-    for k in range(TERMS):
+    few = leaves_few(problem, motion)
+    for k in range(1 if few else TERMS):
         _free_columns(problem, row, motion, k, first)
         if k == 0:
             _own_force(problem, row, motion, slot)
@@ -256,7 +258,10 @@ def _fill_pattern(problem, row, motion, slot):
             for a in range(motion.held[contacts]):
                 for i in range(size):
                     row.grips[slot, motion.held[a], i] = 2.0 * motion.forces[a, i]
-    _onward(problem, row, motion, slot, 1.0, row.onward, slot)
+    if few:
+        fill_free(problem, row, motion, slot)
+    else:
+        _onward(problem, row, motion, slot, 1.0, row.onward, slot)
 
 
 @kernel
@@ -288,7 +293,9 @@ def pattern_slot(problem, row, motion):
 def advance_tangent(problem, row, motion, x):
     """Carry the derivatives through x of the present step."""
     slot = pattern_slot(problem, row, motion)
-    if x == 1.0:
+    if leaves_few(problem, motion):
+        advance_free(problem, row, motion, slot, x)
+    elif x == 1.0:
         _multiply(problem, row.onward, slot, motion)
     else:
         _onward(problem, row, motion, slot, x, motion.onward, 0)
@@ -394,6 +401,9 @@ def through_slip(problem, motion, jumps, watched, slope):
 @kernel
 def hold_tangent(problem, row, motion):
     """Take the velocities of held contacts from the derivatives: they are rounding error."""
+    if leaves_few(problem, motion):
+        hold_free(problem, row, motion, pattern_slot(problem, row, motion))
+        return
     modes = problem.push.shape[0]
     size = motion.tangent.shape[1]
     count = motion.held[problem.spring.size]

@@ -6,7 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-#: Colours of a picture: lines and text need few, and the file is a third as large.
+#: Colours of a picture: lines and text need few, and the source archive has room for small files only.
 _COLOURS = 40
 
 

@@ -80,7 +80,8 @@ def solve_cells(
     settled = NO_PLACES if general.free or general.loop else places
     observed, alike = masses or further or has_direct(system), None
     outputs = observed_rows(system, modal, further)
-    if unique.all() and "multiplier" not in solver.outputs:  # some deviations are not alike in all sectors
+    multipliers = "multiplier" in solver.outputs
+    if unique.all() and not multipliers:  # some deviations are not alike in all sectors
         alike = keep_sectors(system, problem, starts)
     if alike is not None:
         kept, starts = alike
@@ -88,7 +89,8 @@ def solve_cells(
         kinetic, static = kinetic[kept.contacts], static[:, kept.contacts]
     if not observed:
         outputs = np.empty((0, problem.squares.size))
-    grid = Grid(beta, kinetic, static, stuck_from, starts, settled, float(solver.cycles), solver.tolerance)
+    limits = float(solver.cycles), solver.tolerance, multipliers
+    grid = Grid(beta, kinetic, static, stuck_from, starts, settled, *limits)
     contacts, segments = problem.spring.size, problem.law.speed.shape[1]
     found = allocate((mu.size, r.size, many), contacts, len(outputs), segments)
     found.unique[:] = sure

@@ -102,7 +102,7 @@ def stops_of(
     count = places.r.size
     grid = Grid(
         places.beta[:, np.newaxis], kinetic, static, np.ones((1, count), np.int64),
-        _at_limit(problem, places.contact, places.sense * limit), False, _CYCLES, _TOLERANCE,
+        _at_limit(problem, places.contact, places.sense * limit), False, _CYCLES, _TOLERANCE, True,
     )  # fmt: skip
     found = allocate((1, count, 1), general_of(system).count, 0)
     cancel, none = np.zeros(1, np.uint8), np.empty((0, modal.phi.shape[1]))

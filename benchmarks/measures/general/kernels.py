@@ -41,7 +41,7 @@ def map_row(system: fm.System, r: float, beta: np.ndarray) -> tuple[Callable[[],
     kinetic, static = friction_lines(system, _MU)
     stuck_from = np.searchsorted(beta, stick_scale(system, axis))[np.newaxis]
     starts = rest_states(system, modal, axis)
-    grid = Grid(beta[np.newaxis], kinetic, static, stuck_from, starts, False, _CYCLES, _TOLERANCE)
+    grid = Grid(beta[np.newaxis], kinetic, static, stuck_from, starts, False, _CYCLES, _TOLERANCE, False)
     cells = allocate((1, 1, beta.size), general_of(system).count, 0)
     no_masses, cancel = np.empty((0, modal.phi.shape[1])), np.zeros(1, np.uint8)
     memory = lent(make_row_memory(problem, no_masses))

@@ -14,6 +14,7 @@ cholesky       factors of small positive definite matrices
 counts         counters of a motion
 laws           contact laws: phases, watched quantities, what follows an event
 row            the constants of one r and the memory of a motion, allocated and filled; series of the load
+held_together  forces that hold many contacts, in a term of a series
 series         series of one step: modes, forces, motion in the contacts
 pattern        which contacts slide and which are held after an event
 loops          rigid contacts that close loops: which are held, and with which forces
@@ -26,6 +27,7 @@ follow         the motion from one phase of the load to another
 return_map     the state after some half periods, and Newton steps to one that returns
 parts          rings whose sectors move alike: the state after a part of half a period
 recurrence     recurrence detection: the last states at the section, and a return to one of them
+lower_upper    factors of general matrices
 orbits         steady states by Newton's method, their multipliers and periods
 creep          contacts that slide ever less, and in the end rest
 places         places of contacts that rest, from the motion that leads there

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..compiler import inner_kernel, kernel
+from ..compiler.vectors import LANES, load, store
 
 
 @kernel
@@ -40,3 +41,20 @@ def solve_factored(factors, count, right):
         for c in range(a + 1, count):
             right[a] -= factors[c, a] * right[c]
         right[a] /= factors[a, a]
+
+
+@inner_kernel
+def solve_columns(factors, count, right):
+    """`solve_factored` for all columns of `right`."""
+    size = right.shape[1]
+    for i in range(0, size, LANES):
+        for a in range(count):
+            part = load(right, a * size + i)
+            for c in range(a):
+                part = part - load(right, c * size + i) * factors[a, c]
+            store(part * (1.0 / factors[a, a]), right, a * size + i)
+        for a in range(count - 1, -1, -1):
+            part = load(right, a * size + i)
+            for c in range(a + 1, count):
+                part = part - load(right, c * size + i) * factors[c, a]
+            store(part * (1.0 / factors[a, a]), right, a * size + i)

@@ -43,7 +43,7 @@ from .laws.kinds import has_force
 from .laws.speed import has_law
 from .places import fill_needs, keep_held, place_after_start, place_at_start
 from .problem import padded, varies
-from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES
+from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES, RANGES_ALONE
 from .return_map import copy_motion, copy_state, from_rest, steady_period
 from .series import Friction
 from .steady import (
@@ -98,6 +98,7 @@ class Grid(NamedTuple):
     places: int  # see NO_PLACES
     cycles: float
     tolerance: float
+    multipliers: bool  # whether they are wanted
 
 
 class Trail(NamedTuple):
@@ -383,20 +384,21 @@ def _solve_cell(problem, grid, m, i, b, friction, workspace, trail):
     Steady, half periods measured, multiplier
     """
     state, row, memory = grid.starts[i], workspace.row, workspace.memory
+    what = RANGES if grid.multipliers else RANGES_ALONE
     _set_friction(grid, m, i, b, friction)
     if fit_row(problem, i, friction, workspace):
         trail.count[0] = 0
     if trail.count[0] > 0 and is_unique(problem, friction):
         _begin_ahead(grid.beta[i, b], trail, memory)
         found, halves, multiplier = solve_from(
-            problem, friction, state, grid.cycles, grid.tolerance, workspace, RANGES, _where(grid), True
+            problem, friction, state, grid.cycles, grid.tolerance, workspace, what, _where(grid), True
         )
         if found.status == REPEATS and not multiplier >= _ISOLATED:
             return found, halves, multiplier
         _set_friction(grid, m, i, b, friction)
     from_rest(problem, row, friction, state, workspace.motion, memory, workspace.record, NOTHING)
     return solve_from(
-        problem, friction, state, grid.cycles, grid.tolerance, workspace, RANGES, _where(grid), False
+        problem, friction, state, grid.cycles, grid.tolerance, workspace, what, _where(grid), False
     )
 
 

@@ -15,10 +15,7 @@ from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store
 from .laws.kinds import state_size
 from .laws.speed import has_law
-from .problem import INVERSE, LONG, TERMS, padded
-
-#: Contacts from which on tables have this form, where all are rigid; systems with fewer keep their bits.
-_LEAST_CONTACTS = 9
+from .problem import INVERSE, LONG, MANY, TERMS, padded
 
 #: Least share of the modes that are held: below, the sums over all free coordinates take longer.
 _LEAST_HELD = 1.0 / 3.0
@@ -34,7 +31,7 @@ BASIS, TURNED, PULLED = 0, 1, 2
 def leaves_few(problem, motion):
     """Whether the tables of the present pattern are those of the free coordinates."""
     modes, contacts = problem.push.shape[0], problem.spring.size
-    if contacts < _LEAST_CONTACTS or has_law(problem) or state_size(problem) != 2 * modes:
+    if contacts < MANY or has_law(problem) or state_size(problem) != 2 * modes:
         return False
     return motion.held[contacts] >= _LEAST_HELD * modes
 
@@ -80,22 +77,32 @@ def _fill_basis(problem, motion, basis, turned, mirrors):
 
 
 @kernel
-def _fill_forces(problem, row, free, parts, stiffness, damping):
-    """Fill B^T W, G and D, with the signs of accelerations; only `free` rows and columns."""
+def _fill_forces(problem, row, motion, free, parts, stiffness, damping):
+    """Fill B^T W, G and D, with the signs of accelerations.
+
+    Parameters
+    ----------
+    problem, row, motion : Problem, Row, Motion
+    free : number of free coordinates: of the rows and columns that are filled
+    parts : B and its transpose, and B^T W, which is filled
+    stiffness, damping : G and D
+    """
     modes = problem.push.shape[0]
     basis, turned, pulled = parts[BASIS], parts[TURNED], parts[PULLED]
     for c in range(free):
         for m in range(modes):
             pulled[c, m] = turned[c, m] * (row.place_term[0, m] / INVERSE[0])
+    slowed = motion.reduced[2 * modes]  # a row of -B^T C
     for c in range(free):
+        for m in range(modes):
+            slowed[m] = turned[c, m] * (row.velocity_term[0, m] / INVERSE[0])
+            for other in range(modes if problem.coupled else 0):
+                slowed[m] -= turned[c, other] * row.damping[other, m]
         for d in range(free):
             of_place, of_velocity = 0.0, 0.0
             for m in range(modes):
                 of_place += pulled[c, m] * basis[m, d]
-                of_velocity += turned[c, m] * (row.velocity_term[0, m] / INVERSE[0]) * basis[m, d]
-                if problem.coupled:
-                    for other in range(modes):
-                        of_velocity -= turned[c, m] * row.damping[m, other] * basis[other, d]
+                of_velocity += slowed[m] * basis[m, d]
             stiffness[c, d], damping[c, d] = of_place, of_velocity
 
 
@@ -131,7 +138,7 @@ def fill_free(problem, row, motion, slot):
     parts, scratch = row.bases[slot], motion.reduced
     _fill_basis(problem, motion, parts[BASIS], parts[TURNED], scratch)
     stiffness, damping = scratch[:modes], scratch[modes : 2 * modes]
-    _fill_forces(problem, row, free, parts, stiffness, damping)
+    _fill_forces(problem, row, motion, free, parts, stiffness, damping)
     width = padded(2 * free)
     series, whole = row.columns, free * width
     first = slot * LONG * modes * motion.tangent.shape[1]

@@ -43,6 +43,7 @@ from .reach import (
     keep_unknown,
     margin,
 )
+from .return_map import allow_factors
 from .steady import begin_row
 
 #: Places in `Walk.pace`: the next step; a friction ratio whose motion is not like that HERE; where to go on
@@ -256,6 +257,7 @@ def _fill(first, last, problem, search, found, walk, cancel):
         if problem.r[i] == 0.0:
             continue
         begin_row(problem, i, walk.workspace)
+        allow_factors(walk.workspace.memory, True)
         _walk_up(problem, i, search, found, walk)
 
 

@@ -9,15 +9,21 @@ from ..structure.newton import solve_linear
 from .counts import MOVED
 from .follow import FOLLOWED
 from .laws.kinds import state_size
+from .lower_upper import factor_rows, solve_rows
 from .parts import go_on, go_part
 from .problem import SIZE, is_carried
 from .return_map import (
+    NONE_KEPT,
     fill_newton,
+    fill_right,
     fix_rigid,
     go_round,
+    has_factors,
     keep_places,
+    keeps_factors,
     motion_size,
     return_distance,
+    step_size,
     take_end,
     take_step,
 )
@@ -37,6 +43,15 @@ _LESS = 0.5
 #: Contacts per step in which Newton's method may lead away from the steady state, before the events have
 #: their order in it; none of less than twice this number.
 _STRAYS = 5
+
+#: Returns at most where derivatives serve for several steps, and the largest part of the distance that each
+#: may leave: else new derivatives lead on sooner.
+_MOST_RETURNS = 100
+_LESS_KEPT = 0.25
+
+#: Steps of inverse iteration, and the growth in one of them from which on a multiplier may be so near to 1
+#: that it must be known.
+_INVERSE_STEPS, _GROWTH = 4, 1e6
 
 #: Largest step over the size of the motion, and largest motion over its size without friction: beyond, the
 #: equations are singular (an undamped resonance).
@@ -139,6 +154,139 @@ def any_drifts(problem, counts, halves):
 
 
 @kernel
+def _factor_kept(problem, row, halves, motion, memory):
+    """Keep the derivatives in `motion.tangent`, factored; False if the equations of a step are singular."""
+    size = state_size(problem)
+    fill_newton(problem, row, halves, motion, memory)
+    for a in range(size):
+        for b in range(size):
+            memory.factors[a, b] = memory.matrix[a, b]
+    regular = factor_rows(memory.factors, memory.rows, size)
+    memory.kept[0] = halves if regular else NONE_KEPT
+    return regular
+
+
+@kernel
+def _solve_kept(problem, row, halves, derived, motion, memory):
+    """Solve for a Newton step with the derivatives of this return, or with those that are kept; False if they
+    are singular.
+    """
+    if derived:
+        if not _factor_kept(problem, row, halves, motion, memory):
+            return False
+    else:
+        fill_right(problem, memory)
+        fix_rigid(problem, memory)
+    solve_rows(memory.factors, memory.rows, state_size(problem), memory.right)
+    return True
+
+
+@kernel
+def square_kept(problem, row, motion, memory):
+    """Keep the derivatives over a whole period, the square of those over half of it: the motion of the other
+    half mirrors this one.
+
+    Parameters
+    ----------
+    problem, row, motion, memory : see `newton`; the pattern in `motion` is replaced
+    """
+    size, width = state_size(problem), motion.tangent.shape[1]
+    product = motion.onward[1]
+    for a in range(size):
+        for i in range(width):
+            product[a, i] = 0.0
+        for b in range(size):
+            for i in range(width):
+                product[a, i] += motion.tangent[a, b] * motion.tangent[b, i]
+    for a in range(size):
+        for i in range(width):
+            motion.tangent[a, i] = product[a, i]
+    _factor_kept(problem, row, 2, motion, memory)
+
+
+@kernel
+def kept_error(problem, row, halves, memory):
+    """Error of the state in `memory.start` over the size of the motion, after a return without derivatives:
+    the step to which the derivatives that are kept lead; NaN without such, or where a multiplier is near 1.
+
+    Parameters
+    ----------
+    problem, row, halves, memory : see `go_round`
+    """
+    size = state_size(problem)
+    if not has_factors(memory, halves):
+        return math.nan
+    for a in range(size):
+        memory.right[a] = 1.0
+    for _ in range(_INVERSE_STEPS):
+        solve_rows(memory.factors, memory.rows, size, memory.right)
+        growth = 0.0
+        for a in range(size):
+            growth = max(growth, abs(memory.right[a]))
+        if not growth < _GROWTH:
+            return math.nan
+        for a in range(size):
+            memory.right[a] /= growth
+    fill_right(problem, memory)
+    fix_rigid(problem, memory)
+    solve_rows(memory.factors, memory.rows, size, memory.right)
+    return step_size(problem, row, memory)
+
+
+@late_kernel((int, float))
+def _newton_kept(problem, row, friction, halves, tolerance, motion, memory, record):
+    """`newton` with derivatives that serve for as many steps as they lead on fast.
+
+    Parameters
+    ----------
+    problem, row, friction, halves, tolerance, motion, memory, record : see `newton`
+    """
+    last = last_derived = math.inf
+    cycles = 0.0
+    drifting = missed = False
+    steps, strays = 0, problem.spring.size // _STRAYS
+    if memory.kept[0] != halves:
+        memory.kept[0] = NONE_KEPT
+    for _ in range(_MOST_RETURNS):
+        derives = memory.kept[0] == NONE_KEPT
+        steps += derives
+        if steps > _MOST_STEPS:
+            break
+        code, followed = go_on(problem, row, friction, halves, motion, memory, record, derives)
+        cycles += 0.5 * followed
+        if code != FOLLOWED:
+            return NO_REPEAT, cycles
+        drifting = any_drifts(problem, memory.counts, halves)
+        distance = return_distance(problem, row, memory)
+        slow = not distance < (_LESS * last_derived if derives else _LESS_KEPT * last)
+        if distance <= tolerance and (slow or distance == 0.0):
+            return DRIFTS if drifting else REPEATS, cycles
+        if slow and not derives:
+            memory.kept[0] = NONE_KEPT
+            continue
+        if slow and strays > 0 and not distance < _ROUNDED:
+            strays -= 1
+            if not math.isfinite(distance):  # the derivatives are those of another pattern
+                take_end(memory)
+                continue
+        elif slow:
+            if missed or not distance < _ROUNDED:
+                return NO_REPEAT, cycles
+            missed = True
+        last = distance
+        if derives:
+            last_derived = distance
+        if not _solve_kept(problem, row, halves, derives, motion, memory):
+            return NO_REPEAT, cycles
+        step = take_step(problem, row, memory)
+        if not (step <= LARGEST and motion_size(problem, row, memory) <= LARGEST * row.numbers[SIZE]):
+            return NO_REPEAT, cycles
+        if step <= (max(tolerance, _LAST) if derives else min(tolerance, _LAST)):
+            return DRIFTS if drifting else REPEATS, cycles
+    return DRIFTS if drifting else NO_REPEAT, cycles
+
+
+@kernel
 def newton(problem, row, friction, halves, tolerance, motion, memory, record):
     """Find the state that returns after some half periods, from the one in `memory.start`.
 
@@ -153,6 +301,8 @@ def newton(problem, row, friction, halves, tolerance, motion, memory, record):
     -------
     (status, cycles) : REPEATS, DRIFTS or NO_REPEAT; periods followed
     """
+    if keeps_factors(memory):
+        return _newton_kept(problem, row, friction, halves, tolerance, motion, memory, record)
     last = math.inf
     cycles = 0.0
     size = state_size(problem)

@@ -20,15 +20,18 @@ from .laws.coupled import is_coupled
 from .laws.kinds import has_force, holding_stiffness
 from .laws.speed import has_law, steepest, velocity_unit
 from .loops import factor_independent
-from .orbits import NO_REPEAT, REPEATS, newton
+from .orbits import NO_REPEAT, REPEATS, drifts, newton, square_kept
+from .parts import has_parts
 from .pattern import stop_exactly
 from .problem import SECTION, SIZE, F, H, P, Q, R, padded, varies
 from .record import FORCES, HIGH, LOW, NOTHING, clear_record, displaced_by, pushed_by
 from .return_map import (
     begins_held,
     copy_motion,
+    forget_factors,
     from_rest,
     go_round,
+    keeps_factors,
     put_state,
     round_state,
     take_end,
@@ -98,11 +101,21 @@ def make_places(problem):
 
 
 @kernel
-def find_rests(memory, places):
-    """List the contacts that did not move on the last way; how many."""
+def find_rests(problem, memory, halves, places):
+    """List the contacts that rest in a steady state; how many.
+
+    They did not move on the last way, or only by rounding errors: in one direction, at the edge of their
+    limits.
+
+    Parameters
+    ----------
+    problem, memory, places : Problem, Return, Places
+    halves : half periods of the last way
+    """
     count = 0
     for j in range(memory.senses.size):
-        places.rests[j] = 1 if memory.counts[MOVED, j] == 0.0 else 0
+        rests = memory.counts[MOVED, j] == 0.0 or drifts(problem, memory.counts, halves, j)
+        places.rests[j] = 1 if rests else 0
         count += places.rests[j]
     return count
 
@@ -256,7 +269,8 @@ def keep_orbit(problem, friction, halves, workspace):
     Parameters
     ----------
     problem, friction : Problem, Friction
-    halves : even number of half periods after which it returns
+    halves : even number of half periods after which it returns; 1 if the other half mirrors this one, with
+        all places at 0
     workspace : Workspace, whose places have the contacts at rest and their flexibility
     """
     row, motion, memory = workspace.row, workspace.motion, workspace.memory
@@ -278,10 +292,10 @@ def keep_orbit(problem, friction, halves, workspace):
     set_channels(problem, row, SECTION, 0, motion)
     for j in range(contacts):
         places.at[j] = _place(problem, places.orbit, motion, j)
-        places.forces[LOW, j], places.forces[HIGH, j] = (
-            record.forces[LOW, contacts + j],
-            record.forces[HIGH, j],
-        )
+        low, high = record.forces[LOW, contacts + j], record.forces[HIGH, j]
+        if halves == 1:
+            low, high = min(low, -high), max(high, -low)
+        places.forces[LOW, j], places.forces[HIGH, j] = low, high
         record.limits[j] = 0.0
     return code == FOLLOWED
 
@@ -517,14 +531,19 @@ def keep_orbit_anew(problem, friction, halves, tolerance, bits, workspace):
     keep_friction(friction, places.limits)
     _lift_limits(friction, places)
     round_state(problem, row, friction, memory, bits)
+    forget_factors(memory)
     status, cycles = NO_REPEAT, 0.0
+    # half a period suffices where the other half mirrors it, with all places at 0
+    base = 1 if keeps_factors(memory) and problem.symmetric and not has_parts(problem, 1) else halves
     if stop_contacts(problem, row, motion, memory):
-        status, cycles = newton(problem, row, friction, halves, tolerance, motion, memory, record)
+        status, cycles = newton(problem, row, friction, base, tolerance, motion, memory, record)
+        if base != halves and status == REPEATS:
+            square_kept(problem, row, motion, memory)
     restore_friction(friction, places.limits)
     if status != REPEATS:
         return False, cycles
-    kept = keep_orbit(problem, friction, halves, workspace)
-    return kept, cycles + 0.5 * halves
+    kept = keep_orbit(problem, friction, base, workspace)
+    return kept, cycles + 0.5 * base
 
 
 @kernel
@@ -581,6 +600,7 @@ def keep_held(problem, friction, tolerance, workspace):
     record, places = workspace.record, workspace.places
     keep_friction(friction, places.limits)
     _hold_all(friction, memory, places)
+    forget_factors(memory)
     fill_flexibility(problem, places)
     if not stop_contacts(problem, row, motion, memory):
         return False

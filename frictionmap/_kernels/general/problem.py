@@ -36,6 +36,11 @@ WIDTH = 32
 #: records by a formula have more, up to TERMS of a load and LONG of the place of a wall.
 PIECE_TERMS = 6
 
+#: Contacts from which on work is done in forms that suit many: derivatives in the coordinates that held
+#: contacts leave free, and kept for several Newton steps; forces of held contacts all at once.  Systems with
+#: fewer keep their bits.
+MANY = 9
+
 #: Places in `Row.intervals`: number K of half a period; terms of a channel over an interval of a record.
 HALF, LOAD_TERMS = 0, 1
 
@@ -206,6 +211,8 @@ class Motion(NamedTuple):
     springs: np.ndarray  # (N + 1,) int: coupled contacts that act as springs; the last: how many
     grip: np.ndarray  # (N + 1, N) factors of their flexibility; its last row is scratch
     reduced: np.ndarray  # (4 m, S) the derivatives in the coordinates of `left_free`; scratch
+    grips: np.ndarray  # (N, ...) see `held_together`; one place where it is not used, as in the next
+    hold: np.ndarray  # (m + D + 1, ...)
 
 
 @kernel

@@ -15,6 +15,9 @@ from .problem import LONG, SIZE, TERMS, WIDTH, H, Q, R, first_contact_row, force
 
 NOTHING, RANGES, STEPS, FORCES, EVENTS = 0, 1, 2, 3, 4
 
+#: RANGES of a motion whose multipliers are not wanted.
+RANGES_ALONE = 5
+
 _SLOPE, _VALUE = 5, 6  # rows of the scratch
 
 #: Rows of ranges, and of `works`.
@@ -296,6 +299,9 @@ def _keep_forces(problem, motion, end, record):
     for i in range(2 * contacts):
         j = i % contacts
         limit = record.limits[j] if i >= contacts else -record.limits[j]
+        if i >= contacts and limit == 0.0:  # both are the force itself
+            record.forces[LOW, i], record.forces[HIGH, i] = record.forces[LOW, j], record.forces[HIGH, j]
+            continue
         force, nu = (first + 2 * contacts + j) * WIDTH, (first + 3 * contacts + j) * WIDTH
         for k in range(0, WIDTH, LANES):
             store(load(series, force + k) + load(series, nu + k) * limit, scratch, _VALUE * WIDTH + k)

@@ -13,7 +13,7 @@ from .laws.kinds import has_force, holding_stiffness, keeps_force, state_size
 from .laws.speed import count_rows, has_law
 from .loops import begin, factor_independent
 from .pattern import BOX_ROWS
-from .problem import SIZE, F, H, P, Q, is_rigid, moves_alone, padded
+from .problem import MANY, SIZE, F, H, P, Q, is_rigid, moves_alone, padded
 from .record import NOTHING
 from .row import normal_at_section
 from .series import solve_held
@@ -23,6 +23,10 @@ from .tangent import identity
 #: steps; and of states that differ by rounding errors, 2^-50, hardly one in 10^9 is rounded to another one.
 #: The second number is for the few that a turn near the section keeps from being found from there.
 BITS = (16, 26)
+
+#: Values of `Return.kept`: there must not be factors, since derivatives of the steady state itself are wanted
+#: after Newton's method; there are none yet.
+NEVER_KEPT, NONE_KEPT = 0, -1
 
 #: Share of the square of a row of places, outside the span of others, that is rounding error.
 _DEPENDENT = 1e-20
@@ -37,6 +41,9 @@ class Return(NamedTuple):
     end_senses: np.ndarray  # (N,)
     matrix: np.ndarray  # (size, size)
     right: np.ndarray  # (size,)
+    factors: np.ndarray  # (size + 1, size) those of an earlier matrix, see `orbits`; (1, 0): none are kept
+    rows: np.ndarray  # (size,) int: the order of its rows
+    kept: np.ndarray  # (1,) int: half periods that `factors` are of; NONE_KEPT, or NEVER_KEPT
     box: np.ndarray  # scratch of `follow`
     counts: np.ndarray  # counters of the last way
     way: np.ndarray  # (m,) displacement of the rigid-body modes on the last way, without a sign; else 0
@@ -48,10 +55,12 @@ def make_return(problem):
     """Allocate the memory of the return map."""
     contacts, modes = problem.chi.shape
     size = state_size(problem)
+    kept = size if contacts >= MANY else 0
     shape = (3, padded(max(modes, contacts)))
     return Return(
         np.zeros(shape), np.zeros(contacts, np.int64), np.zeros(shape), np.zeros(contacts, np.int64),
-        np.zeros((size, size)), np.zeros(size), np.zeros((BOX_ROWS, contacts)),
+        np.zeros((size, size)), np.zeros(size), np.zeros((kept + 1, kept)), np.zeros(kept, np.int64),
+        np.zeros(1, np.int64), np.zeros((BOX_ROWS, contacts)),
         np.zeros((count_rows(problem), contacts)), np.zeros(modes), np.zeros((modes + 1, contacts)),
     )  # fmt: skip
 
@@ -506,27 +515,71 @@ def fill_newton(problem, row, halves, motion, memory):
             memory.matrix[2 * modes + j, 2 * modes + j] = 1.0
     if halves % 2 == 0:
         keep_places(problem, row, motion, memory, memory.matrix, 1.0)
+    fill_right(problem, memory)
+    fix_rigid(problem, memory)
+
+
+@kernel
+def fill_right(problem, memory):
+    """Fill the right side of the equations of a Newton step: what a return changes."""
+    modes = problem.push.shape[0]
     for m in range(modes):
         memory.right[m] = memory.end[Q, m] - memory.start[Q, m]
         memory.right[modes + m] = memory.end[P, m] - memory.start[P, m]
-    for j in range(size - 2 * modes):
+    for j in range(state_size(problem) - 2 * modes):
         memory.right[2 * modes + j] = memory.end[F, j] - memory.start[F, j]
-    fix_rigid(problem, memory)
+
+
+@kernel
+def keeps_factors(memory):
+    """Whether derivatives may serve for several Newton steps."""
+    return memory.rows.size > 0 and memory.kept[0] != NEVER_KEPT
+
+
+@kernel
+def has_factors(memory, halves):
+    """Whether derivatives over these half periods are kept."""
+    return keeps_factors(memory) and memory.kept[0] == halves
+
+
+@kernel
+def forget_factors(memory):
+    """Begin with new derivatives, so that a result does not depend on what came before."""
+    if memory.kept[0] != NEVER_KEPT:
+        memory.kept[0] = NONE_KEPT
+
+
+@kernel
+def allow_factors(memory, allowed):
+    """Decide whether derivatives may serve for several Newton steps; those that are kept stay."""
+    if not allowed:
+        memory.kept[0] = NEVER_KEPT
+    elif memory.kept[0] == NEVER_KEPT:
+        memory.kept[0] = NONE_KEPT
+
+
+@kernel
+def step_size(problem, row, memory):
+    """Largest part of the solution in `memory.right`, over the size of the motion."""
+    modes = problem.push.shape[0]
+    step = 0.0
+    for m in range(modes):
+        step = max(step, abs(memory.right[m]), abs(memory.right[modes + m]))
+    for j in range(memory.senses.size):
+        if has_force(problem, j) and memory.senses[j] == 0:
+            step = max(step, row.yields[j] * abs(memory.right[2 * modes + j]))
+    return step / motion_size(problem, row, memory)
 
 
 @kernel
 def take_step(problem, row, memory):
     """Add the solution in `memory.right` to the state at the section; its largest part over the size."""
     modes = problem.push.shape[0]
-    size = motion_size(problem, row, memory)
-    step = 0.0
+    step = step_size(problem, row, memory)
     for m in range(modes):
         memory.start[Q, m] += memory.right[m]
         memory.start[P, m] += memory.right[modes + m]
-        step = max(step, abs(memory.right[m]), abs(memory.right[modes + m]))
     for j in range(memory.senses.size):
         if has_force(problem, j):
             memory.start[F, j] += memory.right[2 * modes + j]
-            if memory.senses[j] == 0:
-                step = max(step, row.yields[j] * abs(memory.right[2 * modes + j]))
-    return step / size
+    return step

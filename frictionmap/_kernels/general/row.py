@@ -10,7 +10,22 @@ from .keys import forget_keys, make_keys
 from .laws.contact import force_weight
 from .laws.kinds import state_size
 from .laws.speed import has_law, key_bits
-from .problem import LOAD_TERMS, LONG, SECTION, SIZE, TERMS, TURN, WIDTH, H, Motion, Parts, R, Row, padded
+from .problem import (
+    LOAD_TERMS,
+    LONG,
+    MANY,
+    SECTION,
+    SIZE,
+    TERMS,
+    TURN,
+    WIDTH,
+    H,
+    Motion,
+    Parts,
+    R,
+    Row,
+    padded,
+)
 
 #: Intervals of a period whose load is kept.
 _KEPT_INTERVALS = 512
@@ -120,6 +135,8 @@ def make_motion(problem):
     size = state_size(problem)
     width = padded(modes)
     rows = padded(size)
+    units = modes + problem.push.shape[1]
+    together = contacts >= MANY
     return Motion(
         np.zeros((3, padded(max(modes, contacts)))), np.zeros(contacts, np.int64),
         np.zeros(contacts, np.int64), np.zeros(contacts, np.bool_),
@@ -129,6 +146,8 @@ def make_motion(problem):
         np.zeros((contacts, rows)), np.zeros(rows), np.zeros(size + contacts),
         np.zeros(contacts, np.int64), np.zeros(contacts), np.zeros((4, contacts)),
         np.zeros(contacts + 1, np.int64), np.zeros((contacts + 1, contacts)), np.zeros((4 * modes, rows)),
+        np.zeros((contacts, padded(units)) if together else (1, LANES)),
+        np.zeros((units + 1, width + padded(contacts)) if together else (1, LANES)),
     )  # fmt: skip
 
 

@@ -13,6 +13,7 @@ from ..compiler import inner_kernel, kernel
 from ..compiler.vectors import LANES, filled, load, store, total
 from .cholesky import factor, solve_factored
 from .crossings import value_at
+from .held_together import fill_hold, hold_term, holds_together
 from .laws.coupled import couple_forces, displace_by_others, factor_springs, is_coupled
 from .laws.kinds import holding_stiffness, is_constrained, is_spare, is_spring, keeps_force
 from .laws.speed import constant_factor, law_forces, set_law_damping
@@ -241,13 +242,17 @@ def expand(problem, row, friction, tau, interval, motion, whole):
     if _all_slide(motion) and not problem.coupled and not sloped:
         _free_terms(problem, row, motion, first)
     else:
+        together = holds_together(problem, motion)
+        units = fill_hold(problem, row, motion) if together else 0
         for k in range(TERMS):
             if k > 0:
                 _spring_forces(problem, row, k, motion, first)
             if sloped:
                 law_forces(problem, row, k, motion)
             _free_term(problem, row, k, motion, first)
-            if motion.held[contacts] > 0:
+            if together:
+                hold_term(problem, row, k, motion, units)
+            elif motion.held[contacts] > 0:
                 _hold_term(problem, row, k, motion, first)
     _contact_motion(problem, row, motion, first, whole)
 

@@ -37,6 +37,7 @@ from .orbits import (
     any_drifts,
     any_rests,
     improve_by_part,
+    kept_error,
     largest_multiplier,
     newton,
 )
@@ -53,7 +54,18 @@ from .places import (
     stop_contacts,
 )
 from .problem import Motion, Row, is_free
-from .record import NOTHING, RANGES, STEPS, Record, clear_record, join_slips, keep_drift, make_record, mirror
+from .record import (
+    NOTHING,
+    RANGES,
+    RANGES_ALONE,
+    STEPS,
+    Record,
+    clear_record,
+    join_slips,
+    keep_drift,
+    make_record,
+    mirror,
+)
 from .recurrence import (
     Ring,
     find_long_recurrence,
@@ -66,12 +78,17 @@ from .recurrence import (
 )
 from .return_map import (
     BITS,
+    NONE_KEPT,
     Return,
+    allow_factors,
     base_halves,
     copy_motion,
+    forget_factors,
     from_rest,
     go_round,
+    has_factors,
     is_motion,
+    keeps_factors,
     make_return,
     return_distance,
     round_state,
@@ -93,6 +110,10 @@ ANYWHERE, AT_ZERO, LED = 0, 1, 2
 
 #: Attempts to find a steady state from the one that it is rounded to.
 _MOST_ROUNDED = 3
+
+#: Returns of many contacts that are followed before Newton's method is tried: they take less time than one
+#: with its derivatives, and bring the events into their order.
+_FIRST_WAIT = 8
 
 #: Attempts of Newton's method after which contacts that creep are held.
 _CREEPS = 6
@@ -143,7 +164,7 @@ def _find_unique(problem, friction, cycles, tolerance, workspace):
     """Find the steady state where every motion reaches it; see `find`."""
     memory, ring, base = workspace.memory, workspace.ring, unique_halves(problem)
     spent = 0.0
-    wait = 0
+    wait = _FIRST_WAIT if keeps_factors(memory) and memory.kept[0] == NONE_KEPT else 0
     pause = 0
     while spent < cycles:
         if wait == 0:
@@ -195,9 +216,7 @@ def _creep_to_rest(problem, friction, tolerance, workspace):
     status, cycles = find_crept(problem, friction, tolerance, workspace)
     if status == REPEATS:
         contraction = largest_multiplier(problem, row, 2, STABLE_PRECISION, motion, memory)
-        rests = find_rests(
-            memory, places
-        )  # without one, the motion would not be compared with the state found
+        rests = find_rests(problem, memory, 2, places)  # without one, no motion is compared with the state
         restore_friction(friction, ring.friction)
         fill_flexibility(problem, places)
         if rests > 0 and contraction <= STABLE and keep_orbit(problem, friction, 2, workspace):
@@ -323,24 +342,28 @@ def measure(problem, friction, halves, workspace, what):
     problem, friction : Problem, Friction
     halves : half periods after which it returns
     workspace : Workspace
-    what : NOTHING, RANGES, STEPS or FORCES, what is kept; STEPS and FORCES are kept of whole periods
+    what : NOTHING, RANGES, RANGES_ALONE, STEPS or FORCES, what is kept; STEPS and FORCES of whole periods
 
     Returns
     -------
     (followed, multiplier) : half periods followed, 0 where the motion could not be; the largest modulus of
         the multipliers over the steady period, NaN where NOTHING is kept, or the error of the state follows
-        from parts of half a period
+        from parts of half a period, or from derivatives that were kept
     """
     row, motion, memory, record = workspace.row, workspace.motion, workspace.memory, workspace.record
+    alone = what == RANGES_ALONE
+    what = RANGES if alone else what
     both = halves if halves % 2 == 0 or what == NOTHING or what == RANGES else 2 * halves
     root = has_parts(problem, both) and what != NOTHING
     multiplier = math.nan
     found = False
     for count in range(1, _MOST_MEASURED + 1):
+        alone = alone and not root and has_factors(memory, both)
+        derives = what != NOTHING and not root and not alone
         off = improve_by_part(problem, row, friction, motion, memory, record) if root else 0.0
         clear_record(record)
         record.active[0] = what
-        code = go_round(problem, row, friction, both, motion, memory, record, what != NOTHING and not root)
+        code = go_round(problem, row, friction, both, motion, memory, record, derives)
         record.active[0] = NOTHING
         if code != FOLLOWED:
             return 0, math.nan
@@ -348,7 +371,12 @@ def measure(problem, friction, halves, workspace, what):
             root = False
             continue
         most = MEASURED
-        if what != NOTHING and not root:
+        if alone:
+            off = kept_error(problem, row, both, memory)
+            if off != off:
+                alone = False
+                continue
+        elif derives:
             multiplier = largest_multiplier(problem, row, both, 0.0, motion, memory)
             most *= min(1.0, abs(1.0 - multiplier))
         enough = most if count < _MOST_REPEATED else max(most, RETURNED)
@@ -371,6 +399,7 @@ def begin_row(problem, i, workspace):
     """Fill the constants of r[i]."""
     set_row(problem, i, workspace.row)
     forget_row(workspace.single)
+    forget_factors(workspace.memory)
 
 
 @kernel
@@ -429,6 +458,7 @@ def find_from_rounded(problem, friction, tolerance, bits, workspace):
     round_state(problem, row, friction, memory, bits)
     for _ in range(_MOST_ROUNDED):
         copy_motion(memory.start, memory.senses, places.orbit, places.senses)
+        forget_factors(memory)
         if not stop_contacts(problem, row, motion, memory):
             return False, spent
         for last in (goal, tolerance):
@@ -546,7 +576,7 @@ def _locate(problem, friction, cycles, tolerance, workspace, by_tables):
 
 
 @kernel
-def _settled(problem, friction, state, found, cycles, tolerance, workspace, settled, by_tables, anew):
+def _settled(problem, friction, state, found, cycles, tolerance, workspace, settled, by_tables, anew, way):
     """Give a steady state the places of its contacts at rest, and bits that do not depend on the way to it.
 
     Parameters
@@ -555,6 +585,7 @@ def _settled(problem, friction, state, found, cycles, tolerance, workspace, sett
     found : Steady, the one in `workspace.memory.start`
     by_tables : whether the tables of one mass can be used
     anew : whether it was found by `_find_anew`
+    way : half periods of the last way
 
     Returns
     -------
@@ -566,12 +597,34 @@ def _settled(problem, friction, state, found, cycles, tolerance, workspace, sett
     if not unique:  # the last way was not over the whole period
         go_round(problem, row, friction, found.halves, workspace.motion, memory, workspace.record, False)
     restore_friction(friction, places.limits)
-    if not problem.loops and find_rests(memory, places) > 0 and not is_free(problem):
+    if not problem.loops and find_rests(problem, memory, way, places) > 0 and not is_free(problem):
         return _settle(problem, friction, state, found, cycles, tolerance, workspace, settled), math.nan
     if anew or not unique:
         return found, math.nan
     _, spent, multiplier = _find_anew(problem, friction, tolerance, workspace, by_tables, len(BITS))
     return Steady(REPEATS, found.halves, found.cycles + spent), multiplier
+
+
+@late_kernel((bool, float))
+def _find_by_kept(problem, friction, tolerance, workspace):
+    """Find the steady state near the one in `memory.start` by the derivatives of the last cell.
+
+    Parameters
+    ----------
+    problem, friction, tolerance, workspace : see `find`
+
+    Returns
+    -------
+    (found, cycles) : whether it was found, else `memory.start` is as before; periods followed
+    """
+    memory, places = workspace.memory, workspace.places
+    copy_motion(memory.start, memory.senses, places.orbit, places.senses)
+    status, spent = find_rest(problem, friction, memory.kept[0], tolerance, workspace)
+    if status == REPEATS:
+        end_creep(problem, friction, memory, workspace.record, workspace.ring)
+    else:
+        copy_motion(places.orbit, places.senses, memory.start, memory.senses)
+    return status == REPEATS, spent
 
 
 @kernel
@@ -596,23 +649,28 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
     """
     row, places = workspace.row, workspace.places
     base, unique = unique_halves(problem), is_unique(problem, friction)
-    tables = what == RANGES and unique and not has_law(problem)
+    tables = (what == RANGES or what == RANGES_ALONE) and unique and not has_law(problem)
     by_tables = tables and fits_row(problem, row, workspace.single, base)
     keep_friction(friction, places.limits)
+    allow_factors(workspace.memory, unique)
     anew, spent, multiplier = False, 0.0, math.nan
-    if near and settled != ANYWHERE and unique:
+    known = False
+    if near and settled != ANYWHERE and unique and workspace.memory.kept[0] > 0:
+        known, spent = _find_by_kept(problem, friction, tolerance, workspace)
+    if near and settled != ANYWHERE and unique and not known:
         anew, spent, multiplier = _find_anew(
             problem, friction, tolerance, workspace, by_tables, 0 if by_tables else 1
         )
     if anew and by_tables:
         return Steady(REPEATS, base, spent), base, multiplier
     found = Steady(REPEATS, base, spent)
-    if not anew:
+    if not anew and not known:
         found = _locate(problem, friction, cycles, tolerance, workspace, by_tables)
         found = Steady(found.status, found.halves, found.cycles + spent)
     if found.status == REPEATS and settled != ANYWHERE:
+        way = workspace.memory.kept[0] if known else found.halves
         found, multiplier = _settled(
-            problem, friction, state, found, cycles, tolerance, workspace, settled, by_tables, anew
+            problem, friction, state, found, cycles, tolerance, workspace, settled, by_tables, anew, way
         )
         if not math.isnan(multiplier):
             return found, base, multiplier

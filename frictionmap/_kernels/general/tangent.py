@@ -8,6 +8,7 @@ before it.
 
 from ..compiler import inner_kernel, kernel, late_kernel
 from ..compiler.vectors import LANES, filled, load, store
+from .cholesky import solve_columns
 from .keys import begin_key, find_key, put_digit
 from .laws.coupled import is_coupled
 from .laws.kinds import has_force, holding_stiffness, is_spare, is_spring, keeps_force, state_size
@@ -30,23 +31,6 @@ def identity(problem, motion):
         a = 2 * problem.push.shape[0] + j
         if motion.sense[j] != 0 and a < size:
             motion.tangent[a, a] = 0.0
-
-
-@inner_kernel
-def _solve_columns(factors, count, right):
-    """`solve_factored` for all columns of `right`."""
-    size = right.shape[1]
-    for i in range(0, size, LANES):
-        for a in range(count):
-            part = load(right, a * size + i)
-            for c in range(a):
-                part = part - load(right, c * size + i) * factors[a, c]
-            store(part * (1.0 / factors[a, a]), right, a * size + i)
-        for a in range(count - 1, -1, -1):
-            part = load(right, a * size + i)
-            for c in range(a + 1, count):
-                part = part - load(right, c * size + i) * factors[c, a]
-            store(part * (1.0 / factors[a, a]), right, a * size + i)
 
 
 @inner_kernel
@@ -83,7 +67,7 @@ def _coupled_term(problem, row, motion, k, first):
                 place = load(columns, first + (k * modes + m) * size + i)
                 part = part + place * problem.chi[motion.springs[a], m]
             store(part, motion.forces, a * size + i)
-    _solve_columns(motion.grip, count, motion.forces)
+    solve_columns(motion.grip, count, motion.forces)
     for a in range(count):
         for m in range(modes):
             pull = INVERSE[k] * row.reaction[motion.springs[a], m]
@@ -161,7 +145,7 @@ def _holding_columns(problem, row, motion, k, first):
                 place = load(columns, first + ((k + 2) * modes + m) * size + i)
                 part = part + place * problem.chi[motion.held[a], m]
             store(part, motion.forces, a * size + i)
-    _solve_columns(motion.solve, count, motion.forces)
+    solve_columns(motion.solve, count, motion.forces)
     for i in range(0, size, LANES):
         for m in range(modes):
             at = first + ((k + 2) * modes + m) * size + i
@@ -222,7 +206,7 @@ def _onward_coupled(problem, motion, table, at):
             for m in range(modes):
                 moved = table[at, m, i] - (1.0 if i == m else 0.0)
                 motion.forces[a, i] += problem.chi[motion.springs[a], m] * moved
-    _solve_columns(motion.grip, count, motion.forces)
+    solve_columns(motion.grip, count, motion.forces)
     for j in range(contacts):
         for i in range(size):
             table[at, 2 * modes + j, i] = 1.0 if i == 2 * modes + j else 0.0
@@ -413,7 +397,7 @@ def hold_tangent(problem, row, motion):
             for m in range(modes):
                 part = part + load(motion.tangent, (modes + m) * size + i) * problem.chi[motion.held[a], m]
             store(part, motion.forces, a * size + i)
-    _solve_columns(motion.solve, count, motion.forces)
+    solve_columns(motion.solve, count, motion.forces)
     for a in range(count):
         for m in range(modes):
             reaction = row.reaction[motion.held[a], m]

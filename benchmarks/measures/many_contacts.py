@@ -11,9 +11,10 @@ import time
 from pathlib import Path
 
 import numpy as np
-import xarray as xr
 
 import frictionmap as fm
+from frictionmap.general.dataset import cell_arrays
+from frictionmap.model.settings import Solver
 
 from ..report.figures import new_figure, save_figure
 from ..report.record import pinned, save, spread, table
@@ -31,6 +32,19 @@ _ROUNDS = {False: 3, True: 1}
 
 #: Seconds of a processor after which one system is not measured again.
 _ENOUGH = 1.0
+
+#: What is measured.
+_NAMES = {
+    "rest": "seconds from rest",
+    "neighbour": "seconds from neighbour",
+    "boundaries": "seconds of boundaries",
+}
+_TITLES = {
+    "rest": "A cell from rest",
+    "neighbour": "A cell from its neighbour",
+    "boundaries": "Boundaries at one frequency",
+}
+_OUTPUTS = ("status", "cycles")
 
 #: Fewest sectors of a ring.
 _RING = 3
@@ -71,37 +85,52 @@ KINDS = {
 }
 
 
-def _timed(system: fm.System, r: np.ndarray, beta: np.ndarray) -> tuple[float, xr.Dataset]:
-    """Seconds of a processor of a map."""
+def _timed(system: fm.System, r: np.ndarray, beta: np.ndarray) -> tuple[float, dict[str, np.ndarray]]:
+    """Seconds of a processor of the cells of a map, and their status and periods, without beta_lim."""
+    axes = {"mu": np.ones(1), "r": r, "beta": beta}
+    solver = Solver(outputs=_OUTPUTS)
     began = time.process_time()
-    ds = fm.sweep(system, r, beta, outputs=("status", "cycles"), threads=1)
-    return time.process_time() - began, ds
+    found, _ = cell_arrays(system, axes, _OUTPUTS, solver, 1, None, None, searched=False)
+    return time.process_time() - began, found
+
+
+def _boundary(system: fm.System, r: np.ndarray) -> tuple[float, float, bool]:
+    """Seconds of a processor of the boundaries at one r; that from which no contact slips; whether the others
+    are searched for.
+    """
+    began = time.process_time()
+    ends = fm.boundaries(system, r)
+    taken = time.process_time() - began
+    stick = ends["beta_noslip" if "beta_noslip" in ends else "beta_stick"].item()
+    return taken, stick, "beta_lim" in ends
 
 
 def _measure(system: fm.System, count: int, r: float, quick: bool) -> dict:
-    """Seconds of a processor for a cell from rest, and for one from its neighbour."""
+    """Seconds of a processor for a cell from rest, and for one from its neighbour; for the boundaries at one
+    frequency, where they are searched for.
+    """
     few, near = (
         max(many // count, least) for many, least in zip((_FROM_REST, _NEIGHBOURS), _LEAST, strict=True)
     )
     first = r * float(system.modes.w[0])
     frequencies = first * np.linspace(1.0, _FREQUENCIES, few)
-    ends = fm.boundaries(system, frequencies[:1])
-    beta = ends["beta_noslip" if "beta_noslip" in ends else "beta_stick"].item() * np.linspace(
-        *_FRICTION, 1 + near
-    )
-    _timed(system, frequencies[:1], beta[:1] * 4.0)  # loads the kernels
-    taken: dict[str, list[float]] = {"rest": [], "neighbour": []}
+    _, stick, searched = _boundary(system, frequencies[:1])
+    beta = stick * np.linspace(*_FRICTION, 1 + near)
+    _timed(system, frequencies[:1], beta[:2])  # loads the kernels
+    taken: dict[str, list[float]] = {"rest": [], "neighbour": [], "boundaries": []}
+    if searched:
+        taken["boundaries"].append(_boundary(system, frequencies[:1])[0])
     while len(taken["rest"]) < _ROUNDS[quick] and sum(taken["rest"]) < _ENOUGH:
         column, there = _timed(system, frequencies, beta[:1])
-        row, ds = _timed(system, frequencies[:1], beta)
+        row, row_found = _timed(system, frequencies[:1], beta)
         taken["rest"].append(column / few)
         taken["neighbour"].append((row - column / few) / near)
-    status = np.concatenate((there.status.values.ravel(), ds.status.values.ravel()))
+    status = np.concatenate((there["status"].ravel(), row_found["status"].ravel()))
     return {
         "cells": int(status.size),
         "unresolved": int((status != fm.regimes.RESOLVED).sum()),
-        "periods": [float(there.cycles.mean()), float(ds.cycles[..., 1:].mean())],
-        **{f"seconds from {start}": spread(seconds) for start, seconds in taken.items()},
+        "periods": [float(there["cycles"].mean()), float(row_found["cycles"][..., 1:].mean())],
+        **{_NAMES[what]: spread(seconds) for what, seconds in taken.items() if seconds},
     }
 
 
@@ -112,8 +141,10 @@ def slopes(content: dict) -> dict:
     found: dict = {}
     for kind, rows in content.items():
         found[kind] = {}
-        for name in ("seconds from rest", "seconds from neighbour"):
-            times = {int(n): row[name]["median"] for n, row in rows.items()}
+        for name in _NAMES.values():
+            times = {int(n): row[name]["median"] for n, row in rows.items() if name in row}
+            if not times:
+                continue
             many = [n for n in times if n >= min(8, max(times) // 2)]
             power = np.polyfit(np.log(many), np.log([times[n] for n in many]), 1)[0]
             steps = [times[n + 1] / times[n] for n in times if n + 1 in times and n >= 8]
@@ -123,21 +154,23 @@ def slopes(content: dict) -> dict:
 
 def draw(content: dict, path: Path) -> None:
     """Draw the time of a cell over the number of contacts."""
-    figure = new_figure(9.6, 4.2)
-    panels = figure.subplots(1, 2, sharey=True)
-    for ax, name in zip(panels, ("seconds from rest", "seconds from neighbour"), strict=True):
+    figure = new_figure(12.6, 4.2)
+    panels = figure.subplots(1, 3, sharey=True)
+    for ax, (what, name) in zip(panels, _NAMES.items(), strict=True):
         for (kind, rows), marker in zip(content["cells"].items(), "osD", strict=True):
-            n = [int(one) for one in rows]
-            times = [1e3 * row[name]["median"] for row in rows.values()]
+            n = [int(one) for one, row in rows.items() if name in row]
+            if not n:
+                continue
+            times = [1e3 * rows[str(one)][name]["median"] for one in n]
             power = content["slopes"][kind][name]["power"]
             ax.loglog(n, times, marker=marker, markersize=4, label=f"{kind}: N^{power:.1f}")
         ticks = [1, 2, 4, 8, 16, 32, 64]
         ax.set_xticks(ticks, [str(one) for one in ticks])
         ax.minorticks_off()
         ax.set_xlabel("number of contacts N")
-        ax.set_title(name.removeprefix("seconds ").capitalize(), fontsize=10)
+        ax.set_title(_TITLES[what], fontsize=10)
         ax.legend(fontsize=8)
-    panels[0].set_ylabel("time of a cell [ms]")
+    panels[0].set_ylabel("time [ms]")
     save_figure(figure, path)
 
 
@@ -152,7 +185,7 @@ def run(quick: bool, results: Path) -> dict:
                 if build is ring and count < _RING:
                     continue
                 one = cells[kind][str(count)] = _measure(build(count), count, r, quick)
-                times = [1e3 * one[f"seconds from {start}"]["median"] for start in ("rest", "neighbour")]
+                times = [1e3 * one[name]["median"] if name in one else math.nan for name in _NAMES.values()]
                 lines.append((kind, count, *times, *one["periods"], one["unresolved"]))
                 print(*lines[-1], flush=True)
     table(
@@ -161,6 +194,7 @@ def run(quick: bool, results: Path) -> dict:
             "contacts",
             "ms from rest",
             "ms from neighbour",
+            "ms of boundaries",
             "periods from rest",
             "from neighbour",
             "unresolved",

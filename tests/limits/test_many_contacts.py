@@ -97,6 +97,9 @@ def test_the_bits_of_a_cell_do_not_depend_on_others(n, stiffness):
     assert (whole.status == fm.regimes.RESOLVED).all()
     assert np.unique(whole.contact_amplitude).size > n
     assert whole.equals(fm.sweep(system, r, beta, outputs=outputs, threads=2))
+    # without multipliers derivatives are kept from one return to the next, and not followed once more
+    less = fm.sweep(system, r, beta, outputs=outputs[:-1], threads=2)
+    assert all(less[name].equals(whole[name]) for name in less.data_vars)
     for part in (slice(0, None, 2), slice(1, None, 2), *([k] for k in range(beta.size))):
         alone = fm.sweep(system, r, beta[part], outputs=outputs, threads=2)
         assert alone.equals(whole.isel(beta=part)), part
@@ -147,6 +150,41 @@ def test_random_systems_end_alike_from_two_starts(k):
     """Frames and rings of 9 to 12 contacts; the benchmark has 500 of up to 64."""
     kind, ended, _ = second_starts.check(k, quick=True)
     assert ended == "same", kind
+
+
+def crowded(seed):
+    """Some masses with several contacts each: a rigid one under a varying normal load, the others springs."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(9, 14))
+    rng.random()
+    masses = int(rng.integers(4, n + 1))
+    rng.integers(0, 6)
+    contacts, taken = [], set()
+    for _ in range(n):
+        j = int(rng.integers(1, masses + 1))
+        given = {"stiffness": rng.uniform(0.3, 3.0)} if j in taken else {}
+        given = given or {"normal_load": {1: float(rng.uniform(0.1, 0.5))}}
+        taken.add(j)
+        contacts.append(fm.Contact("fixed-wall", j, ratio=float(rng.uniform(0.3, 1.0)), **given))
+    ratios = [[1.0, *rng.uniform(0.5, 2.0, masses - 1)] for _ in range(2)]
+    system = fm.System(
+        contacts=contacts, mass_ratios=ratios[0], stiffness_ratios=ratios[1],
+        damping_ratios=float(rng.uniform(0.01, 0.08)), load_mass=int(rng.integers(1, masses + 1)),
+    )  # fmt: skip
+    return system, float(rng.uniform(0.5, 6.0)) * system.modes.w[0]
+
+
+@pytest.mark.parametrize("seed", [111, 3, 8])
+def test_contacts_at_the_edge_of_a_slip(seed):
+    """A cell beside one far away is as it is alone: of 111 the search ends at a limit of a spring."""
+    system, r = crowded(seed)
+    beta = np.array([0.3, 0.31, 0.32, 0.6, 0.9])
+    row = fm.sweep(system, [r], beta, outputs=("contact_amplitude",))
+    assert (row.status == fm.regimes.RESOLVED).all()
+    for k in range(beta.size):
+        alone = fm.sweep(system, [r], beta[k : k + 1], outputs=("contact_amplitude",))
+        found, wanted = row.contact_amplitude.values[..., k, :], alone.contact_amplitude.values[..., 0, :]
+        assert found == pytest.approx(wanted, abs=1e-11), k
 
 
 def test_at_most_64_contacts():

@@ -24,7 +24,7 @@ def test_against_lapack(n):
 
 @pytest.mark.parametrize("bad", [0.0, np.nan])
 def test_singular_matrices_are_refused(bad):
-    """A row of zeros, or of what is not a number."""
+    """A row of zeros, or of NaN."""
     factors, rows = np.eye(4, 3), np.zeros(3, np.int64)
     factors[1] = bad
     assert not factor_rows.py_func(factors, rows, 3)

@@ -44,7 +44,7 @@ from .laws.speed import has_law
 from .places import fill_needs, keep_held, place_after_start, place_at_start
 from .problem import padded, varies
 from .record import HIGH, LEAST_SLIP, LOW, NOTHING, OF_FRICTION, OF_WALL, RANGES, RANGES_ALONE
-from .return_map import copy_motion, copy_state, from_rest, steady_period
+from .return_map import copy_motion, copy_state, forget_factors, from_rest, steady_period
 from .series import Friction
 from .steady import (
     AT_ZERO,
@@ -388,6 +388,7 @@ def _solve_cell(problem, grid, m, i, b, friction, workspace, trail):
     _set_friction(grid, m, i, b, friction)
     if fit_row(problem, i, friction, workspace):
         trail.count[0] = 0
+        forget_factors(memory)
     if trail.count[0] > 0 and is_unique(problem, friction):
         _begin_ahead(grid.beta[i, b], trail, memory)
         found, halves, multiplier = solve_from(

@@ -49,6 +49,10 @@ _STRAYS = 5
 _MOST_RETURNS = 100
 _LESS_KEPT = 0.25
 
+#: A distance that such a step does not lessen is due to rounding errors below this, some units of the last
+#: place; else to the derivatives.
+_FLOOR = 1e-14
+
 #: Steps of inverse iteration, and the growth in one of them from which on a multiplier may be so near to 1
 #: that it must be known.
 _INVERSE_STEPS, _GROWTH = 4, 1e6
@@ -167,6 +171,15 @@ def _factor_kept(problem, row, halves, motion, memory):
 
 
 @kernel
+def _is_finite(values):
+    """Whether all values are finite."""
+    finite = True
+    for a in range(values.size):
+        finite = finite and math.isfinite(values[a])
+    return finite
+
+
+@kernel
 def _solve_kept(problem, row, halves, derived, motion, memory):
     """Solve for a Newton step with the derivatives of this return, or with those that are kept; False if they
     are singular.
@@ -178,7 +191,7 @@ def _solve_kept(problem, row, halves, derived, motion, memory):
         fill_right(problem, memory)
         fix_rigid(problem, memory)
     solve_rows(memory.factors, memory.rows, state_size(problem), memory.right)
-    return True
+    return _is_finite(memory.right)
 
 
 @kernel
@@ -223,14 +236,14 @@ def kept_error(problem, row, halves, memory):
         growth = 0.0
         for a in range(size):
             growth = max(growth, abs(memory.right[a]))
-        if not growth < _GROWTH:
+        if not (growth < _GROWTH and _is_finite(memory.right)):
             return math.nan
         for a in range(size):
             memory.right[a] /= growth
     fill_right(problem, memory)
     fix_rigid(problem, memory)
     solve_rows(memory.factors, memory.rows, size, memory.right)
-    return step_size(problem, row, memory)
+    return step_size(problem, row, memory) if _is_finite(memory.right) else math.nan
 
 
 @late_kernel((int, float))
@@ -259,7 +272,8 @@ def _newton_kept(problem, row, friction, halves, tolerance, motion, memory, reco
         drifting = any_drifts(problem, memory.counts, halves)
         distance = return_distance(problem, row, memory)
         slow = not distance < (_LESS * last_derived if derives else _LESS_KEPT * last)
-        if distance <= tolerance and (slow or distance == 0.0):
+        floor = tolerance if derives else min(tolerance, _FLOOR)
+        if distance == 0.0 or (slow and distance <= floor):
             return DRIFTS if drifting else REPEATS, cycles
         if slow and not derives:
             memory.kept[0] = NONE_KEPT

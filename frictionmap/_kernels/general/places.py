@@ -23,9 +23,10 @@ from .loops import factor_independent
 from .orbits import NO_REPEAT, REPEATS, drifts, newton, square_kept
 from .parts import has_parts
 from .pattern import stop_exactly
-from .problem import SECTION, SIZE, F, H, P, Q, R, padded, varies
+from .problem import MANY, SECTION, SIZE, F, H, P, Q, R, padded, varies
 from .record import FORCES, HIGH, LOW, NOTHING, clear_record, displaced_by, pushed_by
 from .return_map import (
+    allow_factors,
     begins_held,
     copy_motion,
     forget_factors,
@@ -104,8 +105,8 @@ def make_places(problem):
 def find_rests(problem, memory, halves, places):
     """List the contacts that rest in a steady state; how many.
 
-    They did not move on the last way, or only by rounding errors: in one direction, at the edge of their
-    limits.
+    They did not move on the last way, or, where derivatives serve for several steps, only by rounding errors:
+    in one direction, at the edge of their limits.
 
     Parameters
     ----------
@@ -114,8 +115,8 @@ def find_rests(problem, memory, halves, places):
     """
     count = 0
     for j in range(memory.senses.size):
-        rests = memory.counts[MOVED, j] == 0.0 or drifts(problem, memory.counts, halves, j)
-        places.rests[j] = 1 if rests else 0
+        edge = places.rests.size >= MANY and drifts(problem, memory.counts, halves, j)
+        places.rests[j] = 1 if memory.counts[MOVED, j] == 0.0 or edge else 0
         count += places.rests[j]
     return count
 
@@ -600,7 +601,7 @@ def keep_held(problem, friction, tolerance, workspace):
     record, places = workspace.record, workspace.places
     keep_friction(friction, places.limits)
     _hold_all(friction, memory, places)
-    forget_factors(memory)
+    allow_factors(memory, False)  # whatever the cells before
     fill_flexibility(problem, places)
     if not stop_contacts(problem, row, motion, memory):
         return False

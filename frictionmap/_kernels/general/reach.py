@@ -30,7 +30,17 @@ from .neighbours import (
 from .orbits import MEASURED, REPEATS, newton
 from .problem import SECTION, H, P
 from .record import EVENTS, NOTHING, Record, make_list
-from .return_map import base_halves, fill_newton, from_rest, go_round, motion_size, return_distance, take_step
+from .return_map import (
+    base_halves,
+    fill_newton,
+    forget_factors,
+    from_rest,
+    go_round,
+    keeps_factors,
+    motion_size,
+    return_distance,
+    take_step,
+)
 from .row import set_channels
 from .series import Friction
 from .steady import Workspace, find, make_workspace
@@ -215,6 +225,8 @@ def _solve(problem, tolerance, walk):
         status, _ = newton(problem, row, walk.friction, halves, tolerance, motion, memory, workspace.record)
         if status == REPEATS or not _turned_at_section(memory):
             break
+        if keeps_factors(memory):  # the last way may have been without derivatives
+            go_round(problem, row, walk.friction, halves, motion, memory, workspace.record, True)
         fill_newton(problem, row, halves, motion, memory)
         if not solve_linear(memory.matrix, memory.right, state_size(problem)):
             break
@@ -285,6 +297,7 @@ def find_motion(problem, i, search, beta, tolerance, walk, a, b):
     a, b : places of motions
     """
     motions = walk.motions
+    forget_factors(walk.workspace.memory)  # no other search changes it
     _set_friction(search, beta, walk)
     if _find(problem, i, search, beta, tolerance, walk, a):
         if _list_motion(problem, search, beta, walk, tolerance, b):

@@ -159,14 +159,30 @@ def _go_on(problem, friction, halves, workspace):
     return code
 
 
+@kernel
+def _go_first(problem, friction, halves, workspace):
+    """Follow a motion of many contacts before Newton's method is tried; the periods followed, 0 where the
+    motion could not be: it is as before then.
+    """
+    memory, ring = workspace.memory, workspace.ring
+    if not keeps_factors(memory) or memory.kept[0] != NONE_KEPT:
+        return 0.0
+    copy_motion(memory.start, memory.senses, ring.orbit, ring.orbit_senses)
+    for _ in range(_FIRST_WAIT):
+        if _go_on(problem, friction, halves, workspace) != FOLLOWED:
+            take_orbit(memory, ring)
+            return 0.0
+    return 0.5 * halves * _FIRST_WAIT
+
+
 @late_kernel(Steady)
 def _find_unique(problem, friction, cycles, tolerance, workspace):
     """Find the steady state where every motion reaches it; see `find`."""
     memory, ring, base = workspace.memory, workspace.ring, unique_halves(problem)
-    spent = 0.0
-    wait = _FIRST_WAIT if keeps_factors(memory) and memory.kept[0] == NONE_KEPT else 0
+    spent = _go_first(problem, friction, base, workspace)
+    wait = 0
     pause = 0
-    while spent < cycles:
+    while pause == 0 or spent < cycles:
         if wait == 0:
             status, more = find_rest(problem, friction, base, tolerance, workspace)
             spent += more
@@ -576,7 +592,7 @@ def _locate(problem, friction, cycles, tolerance, workspace, by_tables):
 
 
 @kernel
-def _settled(problem, friction, state, found, cycles, tolerance, workspace, settled, by_tables, anew, way):
+def _settled(problem, friction, state, found, cycles, tolerance, workspace, settled, by_tables, anew):
     """Give a steady state the places of its contacts at rest, and bits that do not depend on the way to it.
 
     Parameters
@@ -585,7 +601,6 @@ def _settled(problem, friction, state, found, cycles, tolerance, workspace, sett
     found : Steady, the one in `workspace.memory.start`
     by_tables : whether the tables of one mass can be used
     anew : whether it was found by `_find_anew`
-    way : half periods of the last way
 
     Returns
     -------
@@ -597,7 +612,7 @@ def _settled(problem, friction, state, found, cycles, tolerance, workspace, sett
     if not unique:  # the last way was not over the whole period
         go_round(problem, row, friction, found.halves, workspace.motion, memory, workspace.record, False)
     restore_friction(friction, places.limits)
-    if not problem.loops and find_rests(problem, memory, way, places) > 0 and not is_free(problem):
+    if not problem.loops and find_rests(problem, memory, found.halves, places) > 0 and not is_free(problem):
         return _settle(problem, friction, state, found, cycles, tolerance, workspace, settled), math.nan
     if anew or not unique:
         return found, math.nan
@@ -657,6 +672,8 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
     known = False
     if near and settled != ANYWHERE and unique and workspace.memory.kept[0] > 0:
         known, spent = _find_by_kept(problem, friction, tolerance, workspace)
+    elif not near:
+        forget_factors(workspace.memory)  # a state from rest does not depend on other cells
     if near and settled != ANYWHERE and unique and not known:
         anew, spent, multiplier = _find_anew(
             problem, friction, tolerance, workspace, by_tables, 0 if by_tables else 1
@@ -668,9 +685,8 @@ def solve_from(problem, friction, state, cycles, tolerance, workspace, what, set
         found = _locate(problem, friction, cycles, tolerance, workspace, by_tables)
         found = Steady(found.status, found.halves, found.cycles + spent)
     if found.status == REPEATS and settled != ANYWHERE:
-        way = workspace.memory.kept[0] if known else found.halves
         found, multiplier = _settled(
-            problem, friction, state, found, cycles, tolerance, workspace, settled, by_tables, anew, way
+            problem, friction, state, found, cycles, tolerance, workspace, settled, by_tables, anew
         )
         if not math.isnan(multiplier):
             return found, base, multiplier

@@ -247,12 +247,13 @@ def kept_error(problem, row, halves, memory):
 
 
 @late_kernel((int, float))
-def _newton_kept(problem, row, friction, halves, tolerance, motion, memory, record):
+def newton_kept(problem, row, friction, halves, tolerance, motion, memory, record, renews):
     """`newton` with derivatives that serve for as many steps as they lead on fast.
 
     Parameters
     ----------
     problem, row, friction, halves, tolerance, motion, memory, record : see `newton`
+    renews : whether new derivatives follow those that are kept; else it has failed then
     """
     last = last_derived = math.inf
     cycles = 0.0
@@ -277,7 +278,9 @@ def _newton_kept(problem, row, friction, halves, tolerance, motion, memory, reco
             return DRIFTS if drifting else REPEATS, cycles
         if slow and not derives:
             memory.kept[0] = NONE_KEPT
-            continue
+            if renews:
+                continue
+            return NO_REPEAT, cycles
         if slow and strays > 0 and not distance < _ROUNDED:
             strays -= 1
             if not math.isfinite(distance):  # the derivatives are those of another pattern
@@ -316,7 +319,7 @@ def newton(problem, row, friction, halves, tolerance, motion, memory, record):
     (status, cycles) : REPEATS, DRIFTS or NO_REPEAT; periods followed
     """
     if keeps_factors(memory):
-        return _newton_kept(problem, row, friction, halves, tolerance, motion, memory, record)
+        return newton_kept(problem, row, friction, halves, tolerance, motion, memory, record, True)
     last = math.inf
     cycles = 0.0
     size = state_size(problem)

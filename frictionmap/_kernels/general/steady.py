@@ -40,6 +40,7 @@ from .orbits import (
     kept_error,
     largest_multiplier,
     newton,
+    newton_kept,
 )
 from .parts import has_parts
 from .places import (
@@ -632,12 +633,12 @@ def _find_by_kept(problem, friction, tolerance, workspace):
     -------
     (found, cycles) : whether it was found, else `memory.start` is as before; periods followed
     """
-    memory, places = workspace.memory, workspace.places
+    row, motion, memory, places = workspace.row, workspace.motion, workspace.memory, workspace.places
     copy_motion(memory.start, memory.senses, places.orbit, places.senses)
-    status, spent = find_rest(problem, friction, memory.kept[0], tolerance, workspace)
-    if status == REPEATS:
-        end_creep(problem, friction, memory, workspace.record, workspace.ring)
-    else:
+    status, spent = newton_kept(
+        problem, row, friction, memory.kept[0], tolerance, motion, memory, workspace.record, False
+    )
+    if status != REPEATS:
         copy_motion(places.orbit, places.senses, memory.start, memory.senses)
     return status == REPEATS, spent
 

@@ -43,7 +43,7 @@ BENCHMARKS = {
     "spectrum": 25,
     "histories": 60,
     "banks": 70,
-    "many_contacts": 420,
+    "many_contacts": 140,
     "second_starts": 180,
 }
 

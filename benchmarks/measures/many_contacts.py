@@ -154,7 +154,7 @@ def slopes(content: dict) -> dict:
 
 def draw(content: dict, path: Path) -> None:
     """Draw the time of a cell over the number of contacts."""
-    figure = new_figure(12.6, 4.2)
+    figure = new_figure(10.8, 3.7)
     panels = figure.subplots(1, 3, sharey=True)
     for ax, (what, name) in zip(panels, _NAMES.items(), strict=True):
         for (kind, rows), marker in zip(content["cells"].items(), "osD", strict=True):
@@ -169,7 +169,7 @@ def draw(content: dict, path: Path) -> None:
         ax.minorticks_off()
         ax.set_xlabel("number of contacts N")
         ax.set_title(_TITLES[what], fontsize=10)
-        ax.legend(fontsize=8)
+        ax.legend(fontsize=7)
     panels[0].set_ylabel("time [ms]")
     save_figure(figure, path)
 
